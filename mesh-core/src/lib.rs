@@ -1,0 +1,44 @@
+//! Polygon meshes for draping: connectivity with n-gons kept, attributes beside it, target surfaces with exact
+//! closest-point queries, and files written back as they were read.
+//!
+//! | to | call |
+//! |---|---|
+//! | read a mesh, write it back with new positions | [`io`] |
+//! | get connectivity | [`PolygonSoup::into_halfedge`] |
+//! | measure polygons as triangles | [`Triangulation::new`] |
+//! | query a target | [`TriangleSoup::new`], [`PointCloud::new`], [`TargetSurface`] |
+//! | query a moving mesh | [`TriangleBvh`] |
+//! | mark pairs of places | [`Landmark`] |
+//! | build test solids | [`shapes`] |
+
+mod attribute;
+mod build;
+pub mod bvh;
+mod error;
+mod halfedge;
+mod ids;
+pub mod io;
+mod landmark;
+pub mod measure;
+pub mod shapes;
+mod soup;
+pub mod surface;
+mod triangulation;
+
+pub use attribute::{Attribute, EdgeData, FaceData, HalfedgeData, Positions, VertexData};
+pub use bvh::TriangleBvh;
+pub use error::TopologyError;
+pub use halfedge::{HalfedgeMesh, Pieces};
+pub use ids::{EdgeId, FaceId, HalfedgeId, Id, VertexId};
+pub use landmark::{Landmark, LandmarkKind, MeshPoint};
+pub use measure::{Aabb, UnitFrame};
+pub use soup::PolygonSoup;
+pub use surface::{
+    Location, NormalSign, PointCloud, SurfacePoint, SurfaceSample, TargetSurface, TriangleSoup,
+};
+pub use triangulation::{Triangulation, TriangulationEdge};
+
+/// A point of space, in the units of its file.
+pub type Point3 = nalgebra::Point3<f64>;
+/// A direction or displacement, in the units of its file.
+pub type Vector3 = nalgebra::Vector3<f64>;

@@ -1,0 +1,88 @@
+//! Target surfaces: what can be draped onto. A target needs no connectivity.
+
+mod point_cloud;
+mod triangle_soup;
+
+pub use point_cloud::PointCloud;
+pub use triangle_soup::TriangleSoup;
+
+use rand::RngCore;
+use rayon::prelude::*;
+
+use crate::{Aabb, Point3, Vector3};
+
+/// A place on a target surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Location {
+    /// Inside a triangle, on its edge or corner.
+    Triangle {
+        /// Row of the triangle.
+        index: u32,
+        /// Weights of its corners, each ≥ 0, summing to 1.
+        barycentric: [f64; 3],
+    },
+    /// A point of a cloud.
+    Point {
+        /// Row of the point.
+        index: u32,
+    },
+}
+
+/// The closest point of a surface to a query.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SurfacePoint {
+    /// Where it is.
+    pub point: Point3,
+    /// Squared distance to the query, in squared units of the coordinates.
+    pub distance_squared: f64,
+    /// Which part of the surface it is on.
+    pub location: Location,
+}
+
+/// A random point of a surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SurfaceSample {
+    /// Where it is.
+    pub point: Point3,
+    /// Which part of the surface it is on.
+    pub location: Location,
+}
+
+/// How far the sign of a surface's normals can be trusted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NormalSign {
+    /// Normals point outwards (or at least all to one side).
+    Oriented,
+    /// Only the line of a normal means something.
+    Unoriented,
+}
+
+/// A shape to drape onto: a triangle soup (any defects) or a point cloud.
+pub trait TargetSurface: Send + Sync {
+    /// The point of the surface closest to `query`; the lowest row among equals.
+    fn closest_point(&self, query: &Point3) -> SurfacePoint;
+
+    /// The closest point to each query, in parallel; the same bits whatever the thread count.
+    fn closest_points(&self, queries: &[Point3]) -> Vec<SurfacePoint> {
+        queries
+            .par_iter()
+            .with_min_len(64)
+            .map(|q| self.closest_point(q))
+            .collect()
+    }
+
+    /// `n` random places, uniform by area, or over the points of a cloud.
+    fn sample(&self, n: usize, rng: &mut dyn RngCore) -> Vec<SurfaceSample>;
+
+    /// Unit normal at a place of this surface; none where the surface is degenerate.
+    fn normal(&self, location: &Location) -> Option<Vector3>;
+
+    /// Whether the sign of [`Self::normal`] means something.
+    fn normal_sign(&self) -> NormalSign;
+
+    /// Whether the place lies on an open boundary of the surface: the rim of a hole, the end of a scan.
+    fn is_on_boundary(&self, location: &Location) -> bool;
+
+    /// The smallest box around the surface.
+    fn bounds(&self) -> Aabb;
+}

@@ -1,0 +1,241 @@
+//! Polygons as triangles, chosen once on the rest shape.
+
+use spade::{ConstrainedDelaunayTriangulation, Triangulation as _};
+
+use crate::measure::triangle_quality;
+use crate::{FaceId, HalfedgeMesh, Point3, Positions, Vector3, VertexId};
+
+/// Triangles of a polygon mesh, each with its parent face.
+///
+/// Triangles stay triangles; a quad is split along the diagonal whose worst triangle has the better quality Q_f
+/// (Eq. 4), a concave one along the diagonal inside it; a polygon with more sides is split by a constrained
+/// Delaunay triangulation in its best plane. Degenerate faces give no triangle.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Triangulation {
+    triangles: Vec<[VertexId; 3]>,
+    parents: Vec<FaceId>,
+}
+
+/// An edge shared by exactly two triangles of a [`Triangulation`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct TriangulationEdge {
+    /// Its ends, the lower row first.
+    pub vertices: [VertexId; 2],
+    /// The two triangles, by row, the lower first.
+    pub triangles: [usize; 2],
+}
+
+impl Triangulation {
+    /// Triangulates every face of `mesh` on the shape `rest`.
+    pub fn new(mesh: &HalfedgeMesh, rest: &Positions) -> Self {
+        let mut triangles = Vec::with_capacity(mesh.n_faces() * 2);
+        let mut parents = Vec::with_capacity(mesh.n_faces() * 2);
+        for f in mesh.faces() {
+            match *mesh.face_vertices(f) {
+                [] => {}
+                [a, b, c] => triangles.push([a, b, c]),
+                [a, b, c, d] => triangles.extend(split_quad([a, b, c, d], rest)),
+                ref polygon => triangles.extend(split_polygon(polygon, rest)),
+            }
+            parents.resize(triangles.len(), f);
+        }
+        Self { triangles, parents }
+    }
+
+    /// All triangles, those of one face together, in face order.
+    pub fn triangles(&self) -> &[[VertexId; 3]] {
+        &self.triangles
+    }
+
+    /// The face that triangle `t` is part of.
+    pub fn parent(&self, t: usize) -> FaceId {
+        self.parents[t]
+    }
+
+    /// How many triangles there are.
+    pub fn len(&self) -> usize {
+        self.triangles.len()
+    }
+
+    /// Whether there is no triangle.
+    pub fn is_empty(&self) -> bool {
+        self.triangles.is_empty()
+    }
+
+    /// The corner points of every triangle at `x`.
+    pub fn corners<'a>(
+        &'a self,
+        x: &'a Positions,
+    ) -> impl ExactSizeIterator<Item = [Point3; 3]> + 'a {
+        self.triangles.iter().map(|t| t.map(|v| x[v]))
+    }
+
+    /// The edges that exactly two triangles share, diagonals of polygons included, in order of their vertices.
+    pub fn interior_edges(&self) -> Vec<TriangulationEdge> {
+        let mut sides: Vec<([VertexId; 2], usize)> = Vec::with_capacity(3 * self.len());
+        for (t, &[a, b, c]) in self.triangles.iter().enumerate() {
+            sides.extend([[a, b], [b, c], [c, a]].map(|[p, q]| ([p.min(q), p.max(q)], t)));
+        }
+        sides.sort_unstable();
+        sides
+            .chunk_by(|a, b| a.0 == b.0)
+            .filter(|group| group.len() == 2)
+            .map(|group| TriangulationEdge {
+                vertices: group[0].0,
+                triangles: [group[0].1, group[1].1],
+            })
+            .collect()
+    }
+
+    /// The vertices that some triangle uses, in order.
+    pub fn used_vertices(&self) -> Vec<VertexId> {
+        let mut used: Vec<VertexId> = self.triangles.iter().flatten().copied().collect();
+        used.sort_unstable();
+        used.dedup();
+        used
+    }
+}
+
+/// Area vector of a polygon (Newell): twice the area of its projection times the normal.
+fn polygon_area_vector(points: &[Point3]) -> Vector3 {
+    let origin = points[0];
+    points
+        .windows(2)
+        .map(|side| (side[0] - origin).cross(&(side[1] - origin)))
+        .sum()
+}
+
+/// Quality of a triangle, negative when it turns against `normal`.
+fn signed_quality(corners: [Point3; 3], normal: &Vector3) -> f64 {
+    triangle_quality(corners) * crate::measure::area_vector(corners).dot(normal).signum()
+}
+
+fn split_quad([a, b, c, d]: [VertexId; 4], rest: &Positions) -> [[VertexId; 3]; 2] {
+    let normal = polygon_area_vector(&[a, b, c, d].map(|v| rest[v]));
+    let worst = |pair: [[VertexId; 3]; 2]| {
+        let [one, two] = pair.map(|t| signed_quality(t.map(|v| rest[v]), &normal));
+        one.min(two)
+    };
+    let (first, second) = ([[a, b, c], [a, c, d]], [[a, b, d], [b, c, d]]);
+    if worst(first) >= worst(second) {
+        first
+    } else {
+        second
+    }
+}
+
+/// Constrained Delaunay triangulation of the polygon, projected along its area vector; a fan where the projection
+/// crosses itself.
+fn split_polygon(polygon: &[VertexId], rest: &Positions) -> Vec<[VertexId; 3]> {
+    planar_delaunay(polygon, rest)
+        .filter(|triangles| triangles.len() == polygon.len() - 2)
+        .unwrap_or_else(|| {
+            (1..polygon.len() - 1)
+                .map(|k| [polygon[0], polygon[k], polygon[k + 1]])
+                .collect()
+        })
+}
+
+fn planar_delaunay(polygon: &[VertexId], rest: &Positions) -> Option<Vec<[VertexId; 3]>> {
+    let points: Vec<Point3> = polygon.iter().map(|&v| rest[v]).collect();
+    let normal = polygon_area_vector(&points).try_normalize(f64::MIN_POSITIVE)?;
+    let axis = if normal.x.abs() < 0.7 { Vector3::x() } else { Vector3::y() };
+    let u = normal.cross(&axis).try_normalize(f64::MIN_POSITIVE)?;
+    let v = normal.cross(&u);
+    let size = crate::Aabb::of(&points).longest_side();
+    let flat: Vec<[f64; 2]> = points
+        .iter()
+        .map(|p| [(p - points[0]).dot(&u) / size, (p - points[0]).dot(&v) / size])
+        .collect();
+
+    let mut delaunay = ConstrainedDelaunayTriangulation::<spade::Point2<f64>>::new();
+    let mut row_of = Vec::new();
+    for (row, &[s, t]) in flat.iter().enumerate() {
+        let handle = delaunay.insert(spade::Point2::new(s, t)).ok()?;
+        if handle.index() != row {
+            return None;
+        }
+        row_of.push(handle);
+    }
+    for k in 0..row_of.len() {
+        let (from, to) = (row_of[k], row_of[(k + 1) % row_of.len()]);
+        if !delaunay.can_add_constraint(from, to) && !delaunay.exists_constraint(from, to) {
+            return None;
+        }
+        delaunay.add_constraint(from, to);
+    }
+    let mut rows: Vec<[usize; 3]> = delaunay
+        .inner_faces()
+        .map(|face| face.vertices().map(|vertex| vertex.index()))
+        .filter(|t| is_inside(centroid(t.map(|row| flat[row])), &flat))
+        .map(lowest_first)
+        .collect();
+    rows.sort_unstable();
+    Some(rows.into_iter().map(|t| t.map(|row| polygon[row])).collect())
+}
+
+fn centroid(corners: [[f64; 2]; 3]) -> [f64; 2] {
+    [0, 1].map(|axis| corners.iter().map(|c| c[axis]).sum::<f64>() / 3.0)
+}
+
+/// Even–odd rule.
+fn is_inside([x, y]: [f64; 2], polygon: &[[f64; 2]]) -> bool {
+    let n = polygon.len();
+    let crossings = (0..n).filter(|&k| {
+        let ([ax, ay], [bx, by]) = (polygon[k], polygon[(k + 1) % n]);
+        (ay > y) != (by > y) && x < ax + (bx - ax) * (y - ay) / (by - ay)
+    });
+    crossings.count() % 2 == 1
+}
+
+/// The same loop, starting at its lowest row.
+fn lowest_first(t: [usize; 3]) -> [usize; 3] {
+    let [a, b, c] = t;
+    if a <= b && a <= c {
+        [a, b, c]
+    } else if b <= c {
+        [b, c, a]
+    } else {
+        [c, a, b]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::PolygonSoup;
+
+    fn triangulate(points: &[[f64; 3]]) -> Triangulation {
+        let soup = PolygonSoup {
+            positions: points.iter().map(|&p| Point3::from(p)).collect(),
+            faces: vec![(0..points.len() as u32).collect()],
+        };
+        let (mesh, rest) = soup.into_halfedge().unwrap();
+        Triangulation::new(&mesh, &rest)
+    }
+
+    fn area(points: &[[f64; 3]]) -> f64 {
+        let x: Positions = points.iter().map(|&p| Point3::from(p)).collect();
+        triangulate(points).corners(&x).map(crate::measure::triangle_area).sum()
+    }
+
+    #[test]
+    fn concave_quad_is_split_inside() {
+        let arrow = [[0., 0., 0.], [2., 0., 0.], [0.5, 0.5, 0.], [0., 2., 0.]];
+        assert!((area(&arrow) - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn concave_polygon_keeps_its_area() {
+        let l_shape = [[0., 0., 0.], [2., 0., 0.01], [2., 1., 0.], [1., 1., 0.], [1., 2., -0.01], [0., 2., 0.]];
+        let triangles = triangulate(&l_shape);
+        assert_eq!(triangles.len(), 4);
+        assert!((area(&l_shape) - 3.0).abs() < 1e-3);
+    }
+
+    #[test]
+    fn self_crossing_polygon_falls_back_to_a_fan() {
+        let star = [[0., 1., 0.], [0.6, -0.8, 0.], [-0.95, 0.3, 0.], [0.95, 0.3, 0.], [-0.6, -0.8, 0.]];
+        assert_eq!(triangulate(&star).len(), 3);
+    }
+}

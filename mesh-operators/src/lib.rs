@@ -1,0 +1,1 @@
+//! Sparse operators of polygon meshes (Laplacians, mass), sparse Cholesky, and displacement fields extended into space.
