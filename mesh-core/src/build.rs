@@ -157,7 +157,10 @@ fn link_boundaries(mesh: &mut HalfedgeMesh) {
     for h in mesh.halfedges().filter(|&h| mesh.face(h).is_some()) {
         previous[mesh.next(h).index()] = h;
     }
-    for h in mesh.halfedges().filter(|&h| mesh.face(h).is_none()) {
+    for h in mesh.halfedges() {
+        if mesh.face(h).is_some() {
+            continue;
+        }
         let mut out = mesh.twin(h);
         while mesh.face(out).is_some() {
             out = mesh.twin(previous[out.index()]);

@@ -42,10 +42,7 @@ pub fn triangle_quality([a, b, c]: [Point3; 3]) -> f64 {
 
 /// Area of each triangle of `triangulation` at `x`.
 pub fn triangle_areas(triangulation: &Triangulation, x: &Positions) -> Vec<f64> {
-    triangulation
-        .corners(x)
-        .map(triangle_area)
-        .collect()
+    triangulation.corners(x).map(triangle_area).collect()
 }
 
 /// Area-weighted unit normal of each vertex; zero where no face with area touches it.

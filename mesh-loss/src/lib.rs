@@ -1,1 +1,46 @@
-//! Losses of mesh draping, each a value and an analytic gradient in f64.
+//! The losses of mesh draping, each a value and an analytic gradient in f64. No tensor type is known here.
+//!
+//! | term | type | source |
+//! |---|---|---|
+//! | distance to the target, both ways | [`Chamfer`] | Eq. 2 |
+//! | the farthest few distances | [`WorstDistance`] | beyond the paper |
+//! | agreement of normals | [`NormalAgreement`] | the authors' program |
+//! | landmarks | [`LandmarkDistance`] | Eq. 2 |
+//! | corner angles | [`CornerAngle`] | Eq. 3, first term |
+//! | local area distribution | [`AreaKl`] | Eq. 3, second term |
+//! | skinny triangles | [`TriangleQuality`] | Eq. 4 |
+//! | flipped faces | [`Flip`] | the authors' program |
+//! | folded edges | [`FoldBarrier`] | beyond the paper |
+//! | angle distortion as Eq. 6 measures it | [`Conformal`] | beyond the paper |
+//! | uneven displacement | [`Smoothness`] | beyond the paper |
+//!
+//! [`SurfaceMatcher::resample`] draws samples and finds closest points; it alone changes what the distance terms see.
+
+mod area_kl;
+mod chamfer;
+mod conformal;
+mod corner_angle;
+mod flip;
+mod fold_barrier;
+mod gradient;
+mod landmark_distance;
+mod loss;
+mod matching;
+mod normal_agreement;
+mod smoothness;
+mod triangle_quality;
+mod worst_distance;
+
+pub use area_kl::AreaKl;
+pub use chamfer::Chamfer;
+pub use conformal::Conformal;
+pub use corner_angle::CornerAngle;
+pub use flip::Flip;
+pub use fold_barrier::FoldBarrier;
+pub use landmark_distance::LandmarkDistance;
+pub use loss::Loss;
+pub use matching::{Matches, SamplingConfig, SurfaceMatch, SurfaceMatcher};
+pub use normal_agreement::NormalAgreement;
+pub use smoothness::Smoothness;
+pub use triangle_quality::TriangleQuality;
+pub use worst_distance::WorstDistance;

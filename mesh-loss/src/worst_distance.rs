@@ -1,0 +1,61 @@
+//! The farthest few distances: what a mean does not see.
+
+use mesh_core::{Positions, Vector3, VertexData};
+
+use crate::{Loss, Matches, SurfaceMatch};
+
+/// Mean of the largest `share` of the matched distances, both ways.
+///
+/// `W = Σ over both ways of 1/k Σ of the k largest wₖ |pₖ − qₖ|`, with k = ⌈share · n⌉
+///
+/// Units: those of the coordinates. Q hangs on the Hausdorff distance, which an ear tip decides.
+/// Source: beyond the paper. Off in `paper`.
+pub struct WorstDistance<'a> {
+    /// The pairs.
+    pub matches: &'a Matches,
+    /// Which share of them counts, 0..=1.
+    pub share: f64,
+}
+
+impl Loss for WorstDistance<'_> {
+    fn accumulate(&self, x: &Positions, weight: f64, grad: &mut VertexData<Vector3>) -> f64 {
+        [&self.matches.to_target, &self.matches.to_mesh]
+            .into_iter()
+            .map(|matches| self.mean_of_largest(matches, x, weight, grad))
+            .sum()
+    }
+}
+
+impl WorstDistance<'_> {
+    fn mean_of_largest(
+        &self,
+        matches: &[SurfaceMatch],
+        x: &Positions,
+        weight: f64,
+        grad: &mut VertexData<Vector3>,
+    ) -> f64 {
+        let k = ((self.share * matches.len() as f64).ceil() as usize).min(matches.len());
+        if k == 0 {
+            return 0.0;
+        }
+        let mut ranked: Vec<(f64, usize)> = matches
+            .iter()
+            .enumerate()
+            .map(|(row, pair)| (pair.weight * pair.offset(x).norm(), row))
+            .collect();
+        let farther = |a: &(f64, usize), b: &(f64, usize)| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1));
+        ranked.select_nth_unstable_by(k - 1, farther);
+        ranked.truncate(k);
+        ranked.sort_unstable_by(farther);
+
+        for &(_, row) in &ranked {
+            let pair = &matches[row];
+            let offset = pair.offset(x);
+            let distance = offset.norm();
+            if distance > f64::MIN_POSITIVE {
+                pair.scatter(&(offset * (weight * pair.weight / (k as f64 * distance))), grad);
+            }
+        }
+        ranked.iter().map(|(distance, _)| distance).sum::<f64>() / k as f64
+    }
+}

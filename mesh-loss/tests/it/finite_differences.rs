@@ -1,0 +1,135 @@
+//! Each analytic gradient equals central differences in f64, on triangles and polygons, closed and open shapes.
+
+use mesh_core::{
+    shapes, Landmark, MeshPoint, Point3, PolygonSoup, Positions, TriangleSoup, Triangulation,
+    Vector3, VertexData, VertexId,
+};
+use mesh_loss::{
+    AreaKl, Chamfer, Conformal, CornerAngle, Flip, FoldBarrier, LandmarkDistance, Loss, Matches,
+    NormalAgreement, SamplingConfig, Smoothness, SurfaceMatcher, TriangleQuality, WorstDistance,
+};
+use proptest::prelude::*;
+use rand::{Rng, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+
+/// Step of the central differences: its error, h² times a third derivative, is about 1e-10 here.
+const STEP: f64 = 1e-5;
+
+/// The frame whose coordinates are those of the target.
+pub(crate) const UNIT: UnitFrame = UnitFrame { center: Point3::new(0.0, 0.0, 0.0), scale: 1.0 };
+
+pub(crate) fn all_shapes() -> Vec<PolygonSoup> {
+    vec![
+        shapes::icosphere(1),
+        shapes::quad_sphere(2),
+        shapes::prism(7),
+        shapes::open_grid(3, 2),
+        shapes::cone(6),
+    ]
+}
+
+pub(crate) struct Setup {
+    pub(crate) triangulation: Triangulation,
+    pub(crate) rest: Positions,
+    pub(crate) moved: Positions,
+    pub(crate) rng: ChaCha8Rng,
+}
+
+/// A shape at rest and a random deformation of it.
+pub(crate) fn setup(shape: usize, seed: u64, amount: f64) -> Setup {
+    let soup = all_shapes().swap_remove(shape);
+    let (mesh, rest) = soup.into_halfedge().unwrap();
+    let triangulation = Triangulation::new(&mesh, &rest);
+    let mut rng = ChaCha8Rng::seed_from_u64(seed);
+    let moved = rest.map(|p| p + random_vector(&mut rng) * amount);
+    Setup {
+        triangulation,
+        rest,
+        moved,
+        rng,
+    }
+}
+
+fn random_vector(rng: &mut ChaCha8Rng) -> Vector3 {
+    Vector3::from_fn(|_, _| rng.random_range(-1.0..1.0))
+}
+
+/// Directional derivative along random directions; a kink shows as disagreement of the two one-sided differences
+/// and is passed over.
+fn assert_gradient(loss: &dyn Loss, x: &Positions, rng: &mut ChaCha8Rng) -> Result<(), TestCaseError> {
+    let value_at = |x: &Positions| loss.accumulate(x, 1.0, &mut VertexData::new(x.len(), Vector3::zeros()));
+    let mut gradient = VertexData::new(x.len(), Vector3::zeros());
+    let value = loss.accumulate(x, 3.0, &mut gradient);
+    for _ in 0..4 {
+        let direction: Vec<Vector3> = (0..x.len()).map(|_| random_vector(rng)).collect();
+        let shifted = |h: f64| -> Positions {
+            x.iter().zip(&direction).map(|(p, d)| p + d * h).collect()
+        };
+        let (ahead, behind) = (value_at(&shifted(STEP)), value_at(&shifted(-STEP)));
+        let forward = (ahead - value) / STEP;
+        let backward = (value - behind) / STEP;
+        if (forward - backward).abs() > 1e-2 * (1.0 + forward.abs()) {
+            continue;
+        }
+        let numeric = (ahead - behind) / (2.0 * STEP);
+        let analytic = gradient.iter().zip(&direction).map(|(g, d)| g.dot(d)).sum::<f64>() / 3.0;
+        prop_assert!(
+            (numeric - analytic).abs() <= 1e-6 * (1.0 + numeric.abs() + value.abs()),
+            "central difference {numeric}, gradient {analytic}"
+        );
+    }
+    Ok(())
+}
+
+fn matches(s: &mut Setup, normal_bias: Option<f64>) -> Matches {
+    let target = TriangleSoup::new(shapes::icosphere(2)).unwrap();
+    let config = SamplingConfig {
+        n_samples: 40,
+        face_uniform: 0.5,
+        normal_bias,
+    };
+    SurfaceMatcher::new(&s.triangulation, &s.moved, &target, UNIT).resample(&s.moved, &config, &mut s.rng)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+
+    #[test]
+    fn structural_terms(shape in 0..5usize, seed in 0..10_000u64) {
+        let mut s = setup(shape, seed, 0.1);
+        let (t, x) = (&s.triangulation, &s.moved);
+        let terms: [&dyn Loss; 7] = [
+            &CornerAngle::new(t, &s.rest),
+            &AreaKl::new(t, &s.rest),
+            &TriangleQuality { triangulation: t, threshold: 0.9 },
+            &Flip::new(t, &s.rest),
+            &FoldBarrier::new(t, &s.rest, 0.95),
+            &Conformal::new(t, &s.rest),
+            &Smoothness::new(t, &s.rest),
+        ];
+        for term in terms {
+            assert_gradient(term, x, &mut s.rng)?;
+        }
+    }
+
+    #[test]
+    fn distance_terms(shape in 0..5usize, seed in 0..10_000u64) {
+        let mut s = setup(shape, seed, 0.1);
+        let pairs = matches(&mut s, Some(0.3));
+        let worst = WorstDistance { matches: &pairs, share: 0.1 };
+        let terms: [&dyn Loss; 3] = [&Chamfer(&pairs), &worst, &NormalAgreement(&pairs)];
+        for term in terms {
+            assert_gradient(term, &s.moved, &mut s.rng)?;
+        }
+    }
+
+    #[test]
+    fn landmarks(seed in 0..10_000u64) {
+        let mut s = setup(0, seed, 0.1);
+        let corners = s.triangulation.triangles()[3];
+        let mut inside = Landmark::new(VertexId::new(0), Point3::new(0.3, 0.2, 0.1));
+        inside.source = MeshPoint::barycentric(corners, [0.2, 0.3, 0.5]);
+        let pairs = [Landmark::new(VertexId::new(5), Point3::new(1.0, 2.0, 3.0)), inside];
+        assert_gradient(&LandmarkDistance(&pairs), &s.moved, &mut s.rng)?;
+    }
+}

@@ -1,0 +1,4 @@
+//! Every gradient against central differences, and the values that can be known.
+
+mod finite_differences;
+mod values;
