@@ -1,0 +1,179 @@
+//! Closest points and first hits on triangles: exact in f64, over an f32 box hierarchy.
+
+mod box_tree;
+mod ray;
+mod triangle;
+
+pub(crate) use box_tree::BoxTree;
+pub use ray::RayHit;
+pub use triangle::{closest_point_on_triangle, TrianglePoint};
+
+use rayon::prelude::*;
+
+use crate::{Aabb, Location, Point3, SurfacePoint, Vector3};
+
+/// A hierarchy of boxes around triangles that answers closest-point and ray queries, and follows them as they move.
+///
+/// Distances are computed in f64 from the corners as given; the f32 boxes are conservative and only prune. Among
+/// triangles at the same distance the lowest row wins, so answers depend on neither the hierarchy nor the threads.
+/// Degenerate triangles count as the segments or points they are. Corners are expected to be finite.
+///
+/// ```
+/// use mesh_core::{Point3, TriangleBvh};
+/// let bvh = TriangleBvh::new(vec![[[0., 0., 0.], [1., 0., 0.], [0., 1., 0.]].map(Point3::from)]);
+/// let closest = bvh.closest_point(&Point3::new(0.25, 0.25, 2.0)).expect("there is a triangle");
+/// assert_eq!((closest.point, closest.distance_squared), (Point3::new(0.25, 0.25, 0.0), 4.0));
+/// ```
+#[derive(Clone, Debug)]
+pub struct TriangleBvh {
+    tree: BoxTree,
+    /// In the order of the tree's slots.
+    corners: Vec<[Point3; 3]>,
+    bounds: Aabb,
+}
+
+/// The best candidate so far.
+struct Best {
+    row: u32,
+    slot: u32,
+    at: TrianglePoint,
+}
+
+impl TriangleBvh {
+    /// The hierarchy of the triangles with these corners; there may be none.
+    pub fn new(corners: Vec<[Point3; 3]>) -> Self {
+        let bounds = Aabb::of(corners.iter().flatten());
+        let tree = BoxTree::new(bounds, corners.len(), |row| Aabb::of(&corners[row]));
+        let corners = tree.rows().iter().map(|&row| corners[row as usize]).collect();
+        Self {
+            tree,
+            corners,
+            bounds,
+        }
+    }
+
+    /// How many triangles there are.
+    pub fn len(&self) -> usize {
+        self.corners.len()
+    }
+
+    /// Whether there is no triangle.
+    pub fn is_empty(&self) -> bool {
+        self.corners.is_empty()
+    }
+
+    /// The smallest box around all triangles.
+    pub fn bounds(&self) -> Aabb {
+        self.bounds
+    }
+
+    /// The corners of the triangle in row `index`.
+    pub fn triangle(&self, index: u32) -> [Point3; 3] {
+        self.corners[self.tree.slot(index) as usize]
+    }
+
+    /// Moves the triangles, given in row order: boxes are recomputed, the hierarchy stays.
+    ///
+    /// Queries stay exact whatever the movement; they slow down where triangles that were neighbours part.
+    ///
+    /// # Panics
+    /// If there are not as many triangles as before.
+    pub fn refit(&mut self, corners: impl IntoIterator<Item = [Point3; 3]>) {
+        let mut n = 0;
+        for (row, triangle) in corners.into_iter().enumerate() {
+            assert!(row < self.len(), "refit with more than {} triangles", self.len());
+            let slot = self.tree.slot(row as u32) as usize;
+            self.corners[slot] = triangle;
+            n += 1;
+        }
+        assert_eq!(n, self.len(), "refit with fewer triangles than before");
+
+        self.bounds = Aabb::of(self.corners.iter().flatten());
+        let corners = &self.corners;
+        self.tree.refit(self.bounds, |slot| Aabb::of(&corners[slot]));
+    }
+
+    /// The closest point over all triangles; none if there is no triangle.
+    pub fn closest_point(&self, query: &Point3) -> Option<SurfacePoint> {
+        self.search(query, None, |_| true)
+    }
+
+    /// The same answer as [`Self::closest_point`], found faster if the triangle in row `hint` is close to `query`.
+    ///
+    /// A row that does not exist is no hint.
+    pub fn closest_point_from(&self, query: &Point3, hint: u32) -> Option<SurfacePoint> {
+        self.search(query, Some(hint), |_| true)
+    }
+
+    /// The closest point over the triangles whose row `accept` takes; none if it takes none.
+    pub fn closest_point_where(
+        &self,
+        query: &Point3,
+        accept: impl Fn(u32) -> bool,
+    ) -> Option<SurfacePoint> {
+        self.search(query, None, accept)
+    }
+
+    /// The closest point to each query, in parallel and in order; empty if there is no triangle.
+    pub fn closest_points(&self, queries: &[Point3]) -> Vec<SurfacePoint> {
+        let closest = queries.par_iter().with_min_len(64);
+        closest.filter_map(|q| self.closest_point(q)).collect()
+    }
+
+    fn search(
+        &self,
+        query: &Point3,
+        hint: Option<u32>,
+        accept: impl Fn(u32) -> bool,
+    ) -> Option<SurfacePoint> {
+        let mut best: Option<Best> = None;
+        let mut visit = |slot: u32| {
+            let row = self.tree.rows()[slot as usize];
+            let at = closest_point_on_triangle(query, &self.corners[slot as usize]);
+            let d = at.distance_squared;
+            let is_better = best.as_ref().is_none_or(|b| {
+                d < b.at.distance_squared || (d == b.at.distance_squared && row < b.row)
+            });
+            if is_better && accept(row) {
+                best = Some(Best { row, slot, at });
+            }
+            best.as_ref().map_or(f64::INFINITY, |b| b.at.distance_squared)
+        };
+
+        let bound = match hint {
+            Some(row) if (row as usize) < self.len() => visit(self.tree.slot(row)),
+            _ => f64::INFINITY,
+        };
+        self.tree.nearest(query, bound, visit);
+        best.map(|b| self.surface_point(&b))
+    }
+
+    fn surface_point(&self, best: &Best) -> SurfacePoint {
+        SurfacePoint {
+            point: best.at.point(&self.corners[best.slot as usize]),
+            distance_squared: best.at.distance_squared,
+            location: Location::Triangle {
+                index: best.row,
+                barycentric: best.at.barycentric,
+            },
+        }
+    }
+
+    /// The first triangle that the ray from `origin` along `direction` hits, from either side.
+    ///
+    /// Watertight: a ray does not slip through an edge or corner that triangles share. Of several triangles hit at
+    /// the same distance the lowest row is reported. None for a zero direction. A triangle seen edge-on is not hit.
+    pub fn first_hit(&self, origin: &Point3, direction: &Vector3) -> Option<RayHit> {
+        let ray = ray::Ray::new(origin, direction)?;
+        let mut first: Option<RayHit> = None;
+        self.tree.along(origin, direction, |slot| {
+            if let Some(hit) = ray.hit(&self.corners[slot as usize], self.tree.rows()[slot as usize]) {
+                if first.as_ref().is_none_or(|f| hit.is_before(f)) {
+                    first = Some(hit);
+                }
+            }
+            first.as_ref().map_or(f64::INFINITY, |f| f.distance)
+        });
+        first
+    }
+}

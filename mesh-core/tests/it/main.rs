@@ -1,0 +1,3 @@
+//! Properties of meshes, files and target surfaces.
+
+mod closest_point;
