@@ -74,6 +74,11 @@ pub trait TargetSurface: Send + Sync {
     /// `n` random places, uniform by area, or over the points of a cloud.
     fn sample(&self, n: usize, rng: &mut dyn RngCore) -> Vec<SurfaceSample>;
 
+    /// The corners of the triangles, each once, or the points of the cloud: where samples never fall exactly.
+    ///
+    /// Positions that no triangle uses are left out.
+    fn vertices(&self) -> Vec<Point3>;
+
     /// Unit normal at a place of this surface; none where the surface is degenerate.
     fn normal(&self, location: &Location) -> Option<Vector3>;
 
