@@ -1,0 +1,133 @@
+//! Distances between a draped mesh and its target, both ways, in the common frame.
+
+use mesh_core::{Location, Point3, Positions, SurfacePoint, TargetSurface, Triangulation, TriangleBvh, VertexData};
+use rand::{Rng, RngCore, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+
+use crate::evaluate::EvaluationConfig;
+use crate::normalize::common_frame;
+
+/// What the target is, and so what a distance to it means.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "snake_case"))]
+pub enum TargetKind {
+    /// Triangles: distances both ways are exact, from point to surface.
+    Surface,
+    /// Points: exact from cloud to draped surface; the other way to the nearest point, so never below the spacing of
+    /// the cloud.
+    Cloud,
+}
+
+impl TargetKind {
+    /// The kind of `target`.
+    pub fn of(target: &dyn TargetSurface) -> Self {
+        match target.closest_point(&target.bounds().center()).location {
+            Location::Triangle { .. } => Self::Surface,
+            Location::Point { .. } => Self::Cloud,
+        }
+    }
+}
+
+/// Distances from points of one shape to another shape, in longest sides of the target's box.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DirectedDistances {
+    /// From random points, uniform by area; from every point of a cloud.
+    pub of_samples: Vec<f64>,
+    /// From the vertices in use, which random points miss; none for a cloud, whose points are all among the samples.
+    pub of_vertices: Vec<f64>,
+}
+
+impl DirectedDistances {
+    /// From every point asked, samples first.
+    pub fn all(&self) -> impl Iterator<Item = f64> + '_ {
+        self.of_samples.iter().chain(&self.of_vertices).copied()
+    }
+}
+
+/// Distances between a draped mesh and its target, both ways.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SurfaceDistances {
+    /// From the draped mesh to the target.
+    pub to_target: DirectedDistances,
+    /// From the target to the draped mesh.
+    pub to_draped: DirectedDistances,
+}
+
+impl SurfaceDistances {
+    /// Measures from `config.n_samples` points per surface and from every vertex in use.
+    ///
+    /// Degenerate input: no distance at all where `triangulation` is empty.
+    pub fn measure(
+        triangulation: &Triangulation,
+        draped: &Positions,
+        target: &dyn TargetSurface,
+        config: &EvaluationConfig,
+    ) -> Self {
+        let mut rng = ChaCha8Rng::seed_from_u64(config.seed);
+        let unit = 1.0 / common_frame(target).scale;
+        let to_target = |points: &[Point3]| lengths(&target.closest_points(points), unit);
+        let bvh = TriangleBvh::new(triangulation.corners(draped).collect());
+        let to_draped = |points: &[Point3]| lengths(&bvh.closest_points(points), unit);
+
+        let samples = sample_by_area(triangulation, draped, config.n_samples, &mut rng);
+        let vertices: Vec<Point3> = triangulation.used_vertices().iter().map(|&v| draped[v]).collect();
+        let (target_samples, target_vertices) = match TargetKind::of(target) {
+            TargetKind::Surface => (target_sample(target, config.n_samples, &mut rng), target.vertices()),
+            TargetKind::Cloud => (target.vertices(), Vec::new()),
+        };
+        Self {
+            to_target: DirectedDistances {
+                of_samples: to_target(&samples),
+                of_vertices: to_target(&vertices),
+            },
+            to_draped: DirectedDistances {
+                of_samples: to_draped(&target_samples),
+                of_vertices: to_draped(&target_vertices),
+            },
+        }
+    }
+}
+
+/// Distance from every vertex to the target, in the common frame: what a heat map shows.
+pub fn vertex_distances(draped: &Positions, target: &dyn TargetSurface) -> VertexData<f64> {
+    let unit = 1.0 / common_frame(target).scale;
+    VertexData::from(lengths(&target.closest_points(draped.as_slice()), unit))
+}
+
+fn lengths(closest: &[SurfacePoint], unit: f64) -> Vec<f64> {
+    closest.iter().map(|c| c.distance_squared.sqrt() * unit).collect()
+}
+
+fn target_sample(target: &dyn TargetSurface, n: usize, rng: &mut dyn RngCore) -> Vec<Point3> {
+    target.sample(n, rng).iter().map(|s| s.point).collect()
+}
+
+/// `n` points, uniform by area, one in each of `n` equal shares of the area; over triangles alike if none has area.
+fn sample_by_area(triangulation: &Triangulation, x: &Positions, n: usize, rng: &mut ChaCha8Rng) -> Vec<Point3> {
+    let corners: Vec<[Point3; 3]> = triangulation.corners(x).collect();
+    let Some(last) = corners.len().checked_sub(1) else {
+        return Vec::new();
+    };
+    let mut areas = mesh_core::measure::triangle_areas(triangulation, x);
+    let mut total: f64 = areas.iter().sum();
+    if total == 0.0 {
+        areas.fill(1.0);
+        total = corners.len() as f64;
+    }
+    let (mut row, mut end) = (0, areas[0]);
+    let mut point_in_share = |share: usize| {
+        let at = (share as f64 + rng.random::<f64>()) / n as f64 * total;
+        while at >= end && row < last {
+            row += 1;
+            end += areas[row];
+        }
+        point_in_triangle(corners[row], rng.random(), rng.random())
+    };
+    (0..n).map(&mut point_in_share).collect()
+}
+
+/// Uniform over the triangle for `s`, `t` uniform in [0, 1).
+fn point_in_triangle([a, b, c]: [Point3; 3], s: f64, t: f64) -> Point3 {
+    let root = s.sqrt();
+    a + (b - a) * (root * (1.0 - t)) + (c - a) * (root * t)
+}

@@ -1,0 +1,122 @@
+//! Pairs of triangles of one mesh that pass through each other.
+
+use mesh_core::{Aabb, Point3, Positions, Triangulation};
+use rayon::prelude::*;
+use robust::{orient3d, Coord3D};
+
+use crate::box_tree::BoxTree;
+
+/// The pairs of triangles that pass through each other at `x`: rows, the lower first, in order.
+///
+/// A pair counts when an edge of one crosses the inside of the other; the signs are exact. Triangles that only touch,
+/// share a corner or an edge, or overlap within one plane do not count: neighbours never do unless one pierces the
+/// other, whether or not they name the same vertices.
+pub fn self_intersections(triangulation: &Triangulation, x: &Positions) -> Vec<[usize; 2]> {
+    let corners: Vec<[Point3; 3]> = triangulation.corners(x).collect();
+    let boxes: Vec<Aabb> = corners.iter().map(Aabb::of).collect();
+    let tree = BoxTree::new(&boxes);
+    let pairs_of = |one: usize| {
+        let mut others = Vec::new();
+        tree.for_each_overlapping(&boxes[one], |other| {
+            if one < other && is_intersecting(&corners[one], &corners[other]) {
+                others.push(other);
+            }
+        });
+        others.sort_unstable();
+        others.into_iter().map(move |other| [one, other]).collect()
+    };
+    let pairs: Vec<Vec<[usize; 2]>> = (0..corners.len()).into_par_iter().map(pairs_of).collect();
+    pairs.concat()
+}
+
+fn is_intersecting(s: &[Point3; 3], t: &[Point3; 3]) -> bool {
+    let pierces = |s: &[Point3; 3], t| (0..3).any(|k| is_piercing(s[k], s[(k + 1) % 3], t));
+    pierces(s, t) || pierces(t, s)
+}
+
+/// Whether the open segment from `p` to `q` crosses the inside of the triangle.
+fn is_piercing(p: Point3, q: Point3, &[a, b, c]: &[Point3; 3]) -> bool {
+    if orientation(a, b, c, p) * orientation(a, b, c, q) != -1 {
+        return false;
+    }
+    let sides = [orientation(p, q, a, b), orientation(p, q, b, c), orientation(p, q, c, a)];
+    sides == [1, 1, 1] || sides == [-1, -1, -1]
+}
+
+/// The side of the plane `abc` that `d` is on, exactly: −1, 0 or 1.
+fn orientation(a: Point3, b: Point3, c: Point3, d: Point3) -> i8 {
+    let [a, b, c, d] = [a, b, c, d].map(|p| Coord3D { x: p.x, y: p.y, z: p.z });
+    let volume = orient3d(a, b, c, d);
+    i8::from(volume > 0.0) - i8::from(volume < 0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use mesh_core::{shapes, PolygonSoup, Vector3};
+
+    /// The pairs of several shapes put into one mesh.
+    fn pairs_of(shapes: &[PolygonSoup]) -> Vec<[usize; 2]> {
+        let mut all = PolygonSoup::default();
+        for shape in shapes {
+            let first = all.positions.len() as u32;
+            all.positions.extend(&shape.positions);
+            all.faces.extend(shape.faces.iter().map(|f| f.iter().map(|v| v + first).collect::<Vec<_>>()));
+        }
+        let (mesh, rest) = all.into_halfedge().unwrap();
+        self_intersections(&Triangulation::new(&mesh, &rest), &rest)
+    }
+
+    fn moved(mut shape: PolygonSoup, by: [f64; 3]) -> PolygonSoup {
+        for p in &mut shape.positions {
+            *p += Vector3::from(by);
+        }
+        shape
+    }
+
+    fn triangle(corners: [[f64; 3]; 3]) -> PolygonSoup {
+        PolygonSoup {
+            positions: corners.map(Point3::from).to_vec(),
+            faces: vec![vec![0, 1, 2]],
+        }
+    }
+
+    #[test]
+    fn sound_shapes_have_none() {
+        for shape in [shapes::icosphere(2), shapes::quad_sphere(6), shapes::open_grid(5, 5), shapes::cone(9), shapes::prism(7)] {
+            assert_eq!(pairs_of(&[shape]), [] as [[usize; 2]; 0]);
+        }
+    }
+
+    #[test]
+    fn crossing_triangles_are_one_pair_and_touching_ones_none() {
+        let floor = triangle([[0., 0., 0.], [4., 0., 0.], [0., 4., 0.]]);
+        let wall = triangle([[1., 1., -1.], [1., 1., 1.], [9., 9., 0.]]);
+        assert_eq!(pairs_of(&[floor.clone(), wall]), [[0, 1]]);
+        let standing = triangle([[1., 1., 0.], [1., 1., 1.], [2., 2., 1.]]);
+        assert!(pairs_of(&[floor.clone(), standing]).is_empty());
+        let same_corner = triangle([[0., 0., 0.], [-1., 0., 1.], [0., -1., 1.]]);
+        assert!(pairs_of(&[floor, same_corner]).is_empty());
+    }
+
+    #[test]
+    fn a_neighbour_that_pierces_counts() {
+        // Two triangles share vertex 0; the far side of the second stabs through the first.
+        let soup = PolygonSoup {
+            positions: [[0., 0., 0.], [4., 0., 0.], [0., 4., 0.], [1., 1., -1.], [1.5, 1., 1.]].map(Point3::from).to_vec(),
+            faces: vec![vec![0, 1, 2], vec![0, 3, 4]],
+        };
+        assert_eq!(pairs_of(&[soup]), [[0, 1]]);
+    }
+
+    #[test]
+    fn overlapping_spheres_meet_and_distant_ones_do_not() {
+        let ball = shapes::quad_sphere(5);
+        assert!(pairs_of(&[ball.clone(), moved(ball.clone(), [3., 0., 0.])]).is_empty());
+        let pairs = pairs_of(&[ball.clone(), moved(ball.clone(), [0.7, 0.1, 0.03])]);
+        let n = 2 * ball.faces.len();
+        assert!(pairs.len() >= 20);
+        assert!(pairs.iter().all(|&[one, other]| one < n && other >= n));
+        assert!(pairs.is_sorted());
+    }
+}

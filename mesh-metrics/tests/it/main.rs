@@ -1,0 +1,5 @@
+//! Tests of the public functions together.
+
+mod cloud;
+mod invariance;
+mod shifted_copy;
