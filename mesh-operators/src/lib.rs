@@ -1,1 +1,30 @@
-//! Sparse operators of polygon meshes (Laplacians, mass), sparse Cholesky, and displacement fields extended into space.
+//! Sparse operators of polygon meshes, sparse Cholesky, and displacement fields extended into space.
+//!
+//! | to | call |
+//! |---|---|
+//! | measure bending of a surface | [`cotan_laplacian`], [`bilaplacian`] |
+//! | smooth over edges whatever the shape | [`uniform_laplacian`] |
+//! | give each vertex its share of the area | [`voronoi_mass`], [`barycentric_mass`] |
+//! | solve `A x = b` for a positive definite `A` | [`SpdSolver`] |
+//! | minimise `xᵀ A x` with some rows held | [`FixedSolve`] |
+//!
+//! Matrices are `nalgebra_sparse::CsrMatrix<f64>`, one row per vertex; polygons count as the triangles of their
+//! [`mesh_core::Triangulation`].
+
+mod bilaplacian;
+mod cotan_laplacian;
+mod error;
+mod fixed_solve;
+mod mass;
+mod spd_solver;
+mod uniform_laplacian;
+
+pub use bilaplacian::bilaplacian;
+pub use cotan_laplacian::{cotan_laplacian, cotan_weights, CotanWeight};
+pub use error::SolveError;
+pub use fixed_solve::{FixedSolve, FixedSolveScratch};
+pub use mass::{barycentric_mass, voronoi_mass};
+pub use spd_solver::{SolveValue, SpdSolver};
+pub use uniform_laplacian::uniform_laplacian;
+
+pub use nalgebra_sparse::CsrMatrix;

@@ -1,0 +1,5 @@
+//! Operators and solvers on whole shapes.
+
+mod operators;
+mod shapes;
+mod solvers;
