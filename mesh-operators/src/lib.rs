@@ -7,6 +7,8 @@
 //! | give each vertex its share of the area | [`voronoi_mass`], [`barycentric_mass`] |
 //! | solve `A x = b` for a positive definite `A` | [`SpdSolver`] |
 //! | minimise `xᵀ A x` with some rows held | [`FixedSolve`] |
+//! | extend displacements to all of space | [`SpaceExtension`] |
+//! | measure along a surface | [`geodesic_distance_unfolded`] |
 //!
 //! Matrices are `nalgebra_sparse::CsrMatrix<f64>`, one row per vertex; polygons count as the triangles of their
 //! [`mesh_core::Triangulation`].
@@ -15,7 +17,9 @@ mod bilaplacian;
 mod cotan_laplacian;
 mod error;
 mod fixed_solve;
+mod geodesic;
 mod mass;
+mod space_extension;
 mod spd_solver;
 mod uniform_laplacian;
 
@@ -23,7 +27,9 @@ pub use bilaplacian::bilaplacian;
 pub use cotan_laplacian::{cotan_laplacian, cotan_weights, CotanWeight};
 pub use error::SolveError;
 pub use fixed_solve::{FixedSolve, FixedSolveScratch};
+pub use geodesic::geodesic_distance_unfolded;
 pub use mass::{barycentric_mass, voronoi_mass};
+pub use space_extension::{Kernel, SpaceExtension};
 pub use spd_solver::{SolveValue, SpdSolver};
 pub use uniform_laplacian::uniform_laplacian;
 

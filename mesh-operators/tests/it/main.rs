@@ -1,5 +1,6 @@
 //! Operators and solvers on whole shapes.
 
+mod fields;
 mod operators;
 mod shapes;
 mod solvers;
