@@ -164,6 +164,21 @@ impl BoxTree {
             stack[from..].sort_by(|a, b| b.0.total_cmp(&a.0));
         }
     }
+
+    /// Visits the items whose box, rounded outwards, meets `bounds`, in the order of the tree.
+    pub(crate) fn overlapping(&self, bounds: &Aabb, mut visit: impl FnMut(u32)) {
+        let query = outer_box(&self.frame, bounds);
+        let mut stack = if self.nodes.is_empty() { vec![] } else { vec![0] };
+        while let Some(child) = stack.pop() {
+            if child & ITEM != 0 {
+                visit(child ^ ITEM);
+                continue;
+            }
+            let node = &self.nodes[child as usize];
+            let lanes = (0..4).filter(|&lane| node.children[lane] != ABSENT);
+            stack.extend(lanes.filter(|&lane| node.meets(lane, &query)).map(|lane| node.children[lane]));
+        }
+    }
 }
 
 impl Node {
@@ -198,6 +213,11 @@ impl Node {
             Entry::new(c, k),
             Entry::new(d, l),
         ])
+    }
+
+    /// Whether the box of a child overlaps or touches `query`.
+    fn meets(&self, lane: usize, query: &obvhs::aabb::Aabb) -> bool {
+        (0..3).all(|axis| self.min[axis][lane] <= query.max[axis] && query.min[axis] <= self.max[axis][lane])
     }
 
     /// Where a ray enters the box of a child, in lengths of its direction; none if it misses.

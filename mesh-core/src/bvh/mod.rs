@@ -159,6 +159,13 @@ impl TriangleBvh {
         }
     }
 
+    /// Calls `visit` with the row of every triangle whose box meets `bounds`, in no particular order.
+    ///
+    /// Boxes are rounded outwards: none that meets `bounds` is left out, one a hair beside it may be visited.
+    pub fn for_each_overlapping(&self, bounds: &Aabb, mut visit: impl FnMut(u32)) {
+        self.tree.overlapping(bounds, |slot| visit(self.tree.rows()[slot as usize]));
+    }
+
     /// The first triangle that the ray from `origin` along `direction` hits, from either side.
     ///
     /// Watertight: a ray does not slip through an edge or corner that triangles share. Of several triangles hit at

@@ -1,7 +1,7 @@
 //! Closest points and first hits against brute force.
 
 use mesh_core::bvh::closest_point_on_triangle;
-use mesh_core::{shapes, Location, Point3, SurfacePoint, TriangleBvh, Vector3};
+use mesh_core::{shapes, Aabb, Location, Point3, SurfacePoint, TriangleBvh, Vector3};
 use proptest::prelude::*;
 
 fn corners(soup: &mesh_core::PolygonSoup) -> Vec<[Point3; 3]> {
@@ -78,6 +78,22 @@ proptest! {
         let q = q + offset;
         let bvh = TriangleBvh::new(corners.clone());
         prop_assert_eq!(found(bvh.closest_point(&q)), brute_force(&corners, &q, |_| true));
+    }
+
+    #[test]
+    fn no_overlapping_triangle_is_missed(corners in triangles(), a in point(), b in point()) {
+        let bounds = Aabb::of([&a, &b]);
+        let mut found = Vec::new();
+        TriangleBvh::new(corners.clone()).for_each_overlapping(&bounds, |row| found.push(row));
+        found.sort_unstable();
+        // Boxes are rounded by up to 1e-6 of the size of the whole, here below 10.
+        let meets = |row: &u32, slack: f64| {
+            let b = Aabb::of(&corners[*row as usize]);
+            (0..3).all(|k| b.min[k] <= bounds.max[k] + slack && bounds.min[k] <= b.max[k] + slack)
+        };
+        let rows = 0..corners.len() as u32;
+        prop_assert!(rows.filter(|row| meets(row, 0.0)).all(|row| found.binary_search(&row).is_ok()));
+        prop_assert!(found.iter().all(|row| meets(row, 1e-5)));
     }
 
     #[test]
