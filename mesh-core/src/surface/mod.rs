@@ -1,7 +1,10 @@
 //! Target surfaces: what can be draped onto. A target needs no connectivity.
 
+mod boundary;
+mod orientation;
 mod point_cloud;
 mod triangle_soup;
+mod weld;
 
 pub use point_cloud::PointCloud;
 pub use triangle_soup::TriangleSoup;

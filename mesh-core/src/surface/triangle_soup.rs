@@ -1,1 +1,170 @@
+//! Triangle soup as a target: duplicates, degenerate triangles, holes, random orientation are all welcome.
 
+use rand::{Rng, RngCore};
+use rayon::prelude::*;
+
+use super::boundary::Boundary;
+use super::orientation::Orientation;
+use super::weld::Weld;
+use super::{Location, NormalSign, SurfacePoint, SurfaceSample, TargetSurface};
+use crate::measure::{triangle_area, triangle_normal};
+use crate::{Aabb, Point3, PolygonSoup, TopologyError, TriangleBvh, Triangulation, Vector3};
+
+/// A target made of triangles, of which nothing is expected but finite corners.
+///
+/// Polygons are split as by [`Triangulation`]; a [`Location`] names rows of these triangles. Normals are those of the
+/// triangles, turned outwards as far as the shape tells (see [`TargetSurface::normal_sign`]).
+///
+/// ```
+/// use mesh_core::{shapes, Point3, TargetSurface, TriangleSoup};
+/// let target = TriangleSoup::new(shapes::icosphere(3))?;
+/// let closest = target.closest_point(&Point3::new(0.0, 0.0, 2.0));
+/// assert!((closest.distance_squared - 1.0).abs() < 0.01);
+/// assert!(target.normal(&closest.location).is_some_and(|n| n.z > 0.99));
+/// # Ok::<(), mesh_core::TopologyError>(())
+/// ```
+pub struct TriangleSoup {
+    bvh: TriangleBvh,
+    boundary: Boundary,
+    orientation: Orientation,
+    vertices: Vec<Point3>,
+    /// Area of all triangles up to and including each.
+    cumulative_areas: Vec<f64>,
+}
+
+impl TriangleSoup {
+    /// The target with the faces of `soup`; vertices no face uses are ignored.
+    ///
+    /// # Errors
+    /// A face that names a vertex that is not there, a coordinate that is not finite, or no face with three corners.
+    pub fn new(soup: PolygonSoup) -> Result<Self, TopologyError> {
+        let (positions, triangles) = triangles(soup)?;
+        if triangles.is_empty() {
+            return Err(TopologyError::NoFaces);
+        }
+        let corners = |t: &[u32; 3]| t.map(|v| positions[v as usize]);
+        let bvh = TriangleBvh::new(triangles.iter().map(corners).collect());
+        let mut area = 0.0;
+        let cumulative_areas = triangles
+            .iter()
+            .map(|t| {
+                area += triangle_area(corners(t));
+                area
+            })
+            .collect();
+
+        let weld = Weld::new(&positions, &triangles);
+        Ok(Self {
+            boundary: Boundary::new(&weld),
+            orientation: Orientation::new(&weld, &bvh),
+            vertices: weld
+                .used_vertices()
+                .map(|v| positions[v as usize])
+                .collect(),
+            cumulative_areas,
+            bvh,
+        })
+    }
+
+    /// The hierarchy of the triangles, for queries beyond those of [`TargetSurface`].
+    pub fn bvh(&self) -> &TriangleBvh {
+        &self.bvh
+    }
+
+    /// Area of the surface, in squared units of the coordinates.
+    pub fn area(&self) -> f64 {
+        self.cumulative_areas.last().copied().unwrap_or(0.0)
+    }
+
+    /// Whether the surface has an open boundary.
+    pub fn has_boundary(&self) -> bool {
+        !self.boundary.is_empty()
+    }
+
+    /// A triangle with probability proportional to its area; any if none has area.
+    fn random_triangle(&self, rng: &mut dyn RngCore) -> u32 {
+        let n = self.bvh.len();
+        if self.area() > 0.0 {
+            let at = rng.random::<f64>() * self.area();
+            self.cumulative_areas
+                .partition_point(|&c| c <= at)
+                .min(n - 1) as u32
+        } else {
+            rng.random_range(0..n) as u32
+        }
+    }
+}
+
+impl TargetSurface for TriangleSoup {
+    fn closest_point(&self, query: &Point3) -> SurfacePoint {
+        self.bvh
+            .closest_point(query)
+            .expect("a triangle soup has a triangle")
+    }
+
+    fn sample(&self, n: usize, rng: &mut dyn RngCore) -> Vec<SurfaceSample> {
+        let mut sample = || {
+            let index = self.random_triangle(rng);
+            let (root, share) = (rng.random::<f64>().sqrt(), rng.random::<f64>());
+            let barycentric = [1.0 - root, root * (1.0 - share), root * share];
+            let corners = self.bvh.triangle(index);
+            let weighted = (0..3).map(|k| corners[k].coords * barycentric[k]);
+            SurfaceSample {
+                point: Point3::from(weighted.sum::<Vector3>()),
+                location: Location::Triangle { index, barycentric },
+            }
+        };
+        (0..n).map(|_| sample()).collect()
+    }
+
+    fn vertices(&self) -> Vec<Point3> {
+        self.vertices.clone()
+    }
+
+    fn normal(&self, location: &Location) -> Option<Vector3> {
+        let Location::Triangle { index, .. } = *location else {
+            return None;
+        };
+        let normal = triangle_normal(self.bvh.triangle(index))?;
+        Some(if self.orientation.is_flipped[index as usize] {
+            -normal
+        } else {
+            normal
+        })
+    }
+
+    fn normal_sign(&self) -> NormalSign {
+        self.orientation.sign
+    }
+
+    fn is_on_boundary(&self, location: &Location) -> bool {
+        match location {
+            Location::Triangle { index, barycentric } => {
+                self.boundary.contains(*index, barycentric)
+            }
+            Location::Point { .. } => false,
+        }
+    }
+
+    fn bounds(&self) -> Aabb {
+        self.bvh.bounds()
+    }
+}
+
+/// The points of `soup` and its faces as triangles with three different vertices.
+fn triangles(soup: PolygonSoup) -> Result<(Vec<Point3>, Vec<[u32; 3]>), TopologyError> {
+    soup.check()?;
+    if soup.faces.par_iter().all(|f| f.len() == 3) {
+        // Large scans are triangles: no need of a halfedge mesh.
+        let distinct = soup.faces.iter().map(|f| [f[0], f[1], f[2]]);
+        let triangles = distinct
+            .filter(|[a, b, c]| a != b && b != c && c != a)
+            .collect();
+        return Ok((soup.positions, triangles));
+    }
+    let (mesh, positions) = soup.into_halfedge()?;
+    let triangulation = Triangulation::new(&mesh, &positions);
+    let rows = |t: &[crate::VertexId; 3]| t.map(|v| v.index() as u32);
+    let triangles = triangulation.triangles().iter().map(rows).collect();
+    Ok((positions.into_vec(), triangles))
+}
