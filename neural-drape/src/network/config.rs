@@ -1,0 +1,161 @@
+//! How the network is built: depth, width, encoding and the schedule that reveals it.
+
+use serde::{Deserialize, Serialize};
+
+use crate::DrapeError;
+
+/// Shape of the network that maps initial positions to draped ones.
+///
+/// Positions enter in the frame where the longest side of the initial shape is 2, so a coordinate lies in ±1.
+#[derive(Clone, Copy, PartialEq, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct NetworkConfig {
+    /// How many hidden layers, ≥ 1. Paper, "Implementation Details": 4.
+    pub n_hidden_layers: usize,
+    /// Neurons of each hidden layer, ≥ 1. Paper: 256.
+    pub width: usize,
+    /// What the first layer sees of a position.
+    pub encoding: Encoding,
+    /// Length, in half longest sides, of the offset for which the last layer puts out 1. It sets how far an Adam step
+    /// moves a vertex.
+    pub output_scale: f64,
+}
+
+/// What the first layer sees of a position x.
+#[derive(Clone, Copy, PartialEq, Debug, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum Encoding {
+    /// x itself: the network's spectral bias unaltered.
+    None,
+    /// x and waves of x, all from the start.
+    Static(Frequencies),
+    /// x and waves of x, low frequencies first (Paper, "Progressive Positional Encoding").
+    Progressive {
+        /// The waves, sorted by frequency.
+        frequencies: Frequencies,
+        /// Into how many blocks they are divided, ≥ 1; the first is there from the start. Paper: 6.
+        n_blocks: usize,
+        /// When the other blocks come in.
+        reveal: Reveal,
+    },
+}
+
+/// The waves of an encoding, drawn from the seed and sorted so that the row is the rank of the frequency.
+#[derive(Clone, Copy, PartialEq, Debug, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum Frequencies {
+    /// `sin(30 W x)`, each entry of W uniform in ±`max`/30, each column sorted by magnitude (the authors' program).
+    Uniform {
+        /// Rows of W. The authors: 253.
+        count: usize,
+        /// Highest frequency along one axis, in radians per unit. The authors: 10.
+        max: f64,
+        /// Whether the optimiser moves W. The authors: yes.
+        trainable: bool,
+    },
+    /// `sin(b·x), cos(b·x)`, each entry of b normal, sorted by |b| (random Fourier features, Tancik et al. 2020).
+    Gaussian {
+        /// How many b.
+        count: usize,
+        /// Standard deviation of an entry of b, in radians per unit: smaller is smoother.
+        deviation: f64,
+    },
+}
+
+/// When the blocks of a progressive encoding come in, as the run goes from 0 to 1.
+#[derive(Clone, Copy, PartialEq, Debug, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum Reveal {
+    /// Twice as many phases as blocks: even ones hold, odd ones fade the next block in (the authors' program).
+    HoldAndFade,
+    /// One block after the other, all there when the run reaches `until`.
+    Even {
+        /// Part of the run, in (0, 1].
+        until: f64,
+    },
+}
+
+impl NetworkConfig {
+    /// The paper's network: 4 hidden layers of 256 on a progressive encoding in 6 blocks.
+    ///
+    /// The waves, their training and the schedule are the authors' program's; the paper names none. Departures: one
+    /// network on the masked encoding, as the paper says, where the program sums six; a residual output that starts
+    /// at the identity, where the program is trained to it first.
+    pub fn paper() -> Self {
+        Self {
+            n_hidden_layers: 4,
+            width: 256,
+            encoding: Encoding::Progressive {
+                frequencies: Frequencies::Uniform {
+                    count: 253,
+                    max: 10.0,
+                    trainable: true,
+                },
+                n_blocks: 6,
+                reveal: Reveal::HoldAndFade,
+            },
+            output_scale: 1.0,
+        }
+    }
+
+    /// A network of the same size on fixed random Fourier features, all revealed at 70 % of the run: it fits closer
+    /// in less time, and its features are computed once.
+    pub fn standard() -> Self {
+        Self {
+            encoding: Encoding::Progressive {
+                frequencies: Frequencies::Gaussian {
+                    count: 126,
+                    deviation: 3.0,
+                },
+                n_blocks: 6,
+                reveal: Reveal::Even { until: 0.7 },
+            },
+            ..Self::paper()
+        }
+    }
+
+    /// Every setting is in its range.
+    pub(super) fn check(&self) -> Result<(), DrapeError> {
+        let count = (1.0, f64::MAX, "1 or more");
+        let frequency = (0.0, f64::MAX, "0 or more");
+        let mut settings = vec![
+            ("n_hidden_layers", self.n_hidden_layers as f64, count),
+            ("width", self.width as f64, count),
+            (
+                "output_scale",
+                self.output_scale,
+                (f64::MIN_POSITIVE, f64::MAX, "above 0"),
+            ),
+        ];
+        match self.encoding.frequencies() {
+            Some(Frequencies::Uniform { max, .. }) => settings.push(("max", max, frequency)),
+            Some(Frequencies::Gaussian { deviation, .. }) => {
+                settings.push(("deviation", deviation, frequency));
+            }
+            None => {}
+        }
+        if let Encoding::Progressive {
+            n_blocks, reveal, ..
+        } = self.encoding
+        {
+            settings.push(("n_blocks", n_blocks as f64, count));
+            if let Reveal::Even { until } = reveal {
+                settings.push((
+                    "until",
+                    until,
+                    (f64::MIN_POSITIVE, 1.0, "above 0 and at most 1"),
+                ));
+            }
+        }
+        for (name, value, (least, most, expected)) in settings {
+            if !(least..=most).contains(&value) {
+                return Err(DrapeError::Setting {
+                    name,
+                    value,
+                    expected,
+                });
+            }
+        }
+        Ok(())
+    }
+}
