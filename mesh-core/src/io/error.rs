@@ -1,0 +1,232 @@
+//! What can go wrong between a file and a mesh, and where.
+
+use std::error::Error;
+use std::fmt;
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// A file that could not be read: which, where in it, and why.
+#[derive(Debug)]
+pub struct ReadError {
+    /// The file.
+    pub path: PathBuf,
+    /// Where in the file.
+    pub place: Place,
+    /// What is wrong there.
+    pub problem: ReadProblem,
+}
+
+impl fmt::Display for ReadError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}{}: {}", self.path.display(), self.place, self.problem)
+    }
+}
+
+impl Error for ReadError {
+    fn source(&self) -> Option<&(dyn Error + 'static)> {
+        self.problem.source()
+    }
+}
+
+/// A place in a file.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Place {
+    /// The file as a whole.
+    File,
+    /// A line of text, counted from 1.
+    Line(usize),
+    /// An element of a binary file.
+    Row {
+        /// What the file calls the element.
+        element: String,
+        /// Its row, counted from 0.
+        row: usize,
+    },
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::File => Ok(()),
+            Self::Line(line) => write!(f, ":{line}"),
+            Self::Row { element, row } => write!(f, ": {element} {row} (counted from 0)"),
+        }
+    }
+}
+
+/// What is wrong at a place of a file.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ReadProblem {
+    /// The operating system refused.
+    #[error("cannot be read")]
+    Io(#[source] io::Error),
+    /// There is not one byte.
+    #[error("the file is empty")]
+    Empty,
+    /// Neither content nor extension tells the format.
+    #[error("not a mesh format known here; give an OBJ, OFF or PLY file with its usual extension")]
+    UnknownFormat,
+    /// Binary data where text was expected.
+    #[error("binary data in what should be text; is this really an {format} file")]
+    Binary {
+        /// The format that content or extension promised.
+        format: &'static str,
+    },
+    /// There is no vertex.
+    #[error("no vertex in it; is this really an {format} file")]
+    NoVertices {
+        /// The format that content or extension promised.
+        format: &'static str,
+    },
+    /// Something else where a number was expected.
+    #[error("expected a number, found `{text}`")]
+    NotANumber {
+        /// What the file says.
+        text: String,
+    },
+    /// Something else where a whole number in some range was expected.
+    #[error("expected {expected}, found `{text}`")]
+    Unexpected {
+        /// What would be right.
+        expected: &'static str,
+        /// What the file says.
+        text: String,
+    },
+    /// A coordinate that is NaN or infinite.
+    #[error("the coordinate `{text}` is not finite; repair or remove this vertex")]
+    NotFinite {
+        /// What the file says.
+        text: String,
+    },
+    /// The line or file ends too early.
+    #[error("ends where {expected} was expected")]
+    EndsEarly {
+        /// What would be right.
+        expected: &'static str,
+    },
+    /// A face names a vertex that is not there.
+    #[error(
+        "a face names vertex {index}, but there are {n_vertices} vertices (counted from {first})"
+    )]
+    IndexOutOfRange {
+        /// The vertex it names, as the file counts.
+        index: i64,
+        /// How many vertices there are.
+        n_vertices: usize,
+        /// What the file calls the first vertex.
+        first: i64,
+    },
+    /// A header that promises more than the file can hold.
+    #[error(
+        "{count} {element} are promised, more than the {bytes} bytes left in the file can hold"
+    )]
+    Oversized {
+        /// What is promised.
+        element: String,
+        /// How many of it.
+        count: u64,
+        /// How many bytes there are for them.
+        bytes: usize,
+    },
+    /// More elements than a 32-bit index can name.
+    #[error("more vertices or faces than a 32-bit index can name; split the file")]
+    TooMany,
+    /// A correct file with something in it that is not read here.
+    #[error("{feature} cannot be read; {advice}")]
+    Unsupported {
+        /// What the file uses.
+        feature: String,
+        /// What to do about it.
+        advice: &'static str,
+    },
+}
+
+/// A file that could not be written.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum WriteError {
+    /// The operating system refused.
+    #[error("{}: cannot be written", path.display())]
+    Io {
+        /// The file.
+        path: PathBuf,
+        /// What the operating system says.
+        #[source]
+        source: io::Error,
+    },
+    /// The extension names no format that can be written.
+    #[error("{}: no format with this extension can be written; use one of {known}", path.display())]
+    UnknownFormat {
+        /// The file.
+        path: PathBuf,
+        /// The extensions that can.
+        known: &'static str,
+    },
+    /// Not one position per vertex of the file.
+    #[error("{}: {found} positions for the {expected} vertices of the source", path.display())]
+    WrongCount {
+        /// The file.
+        path: PathBuf,
+        /// How many vertices the source has.
+        expected: usize,
+        /// How many positions were given.
+        found: usize,
+    },
+    /// A position that the file cannot hold.
+    #[error("{}: the position of vertex {vertex} (counted from 0) is not a number this file can hold", path.display())]
+    NotFinite {
+        /// The file.
+        path: PathBuf,
+        /// Row of the vertex.
+        vertex: usize,
+    },
+    /// The source no longer reads as it did.
+    #[error(transparent)]
+    Source(#[from] ReadError),
+}
+
+/// What a reader of one format returns: it does not know the file's name.
+#[derive(Debug)]
+pub(super) struct Fault {
+    pub(super) place: Place,
+    pub(super) problem: ReadProblem,
+}
+
+impl Fault {
+    /// A fault of the file as a whole.
+    pub(super) fn whole(problem: ReadProblem) -> Self {
+        Self {
+            place: Place::File,
+            problem,
+        }
+    }
+
+    /// A fault at byte `at` of the text `bytes`.
+    pub(super) fn in_text(bytes: &[u8], at: usize, problem: ReadProblem) -> Self {
+        Self {
+            place: Place::Line(super::text::line_of(bytes, at)),
+            problem,
+        }
+    }
+
+    /// The fault with the name of the file it is in.
+    pub(super) fn of(self, path: &Path) -> ReadError {
+        ReadError {
+            path: path.to_owned(),
+            place: self.place,
+            problem: self.problem,
+        }
+    }
+}
+
+/// What a user may see of bytes that should have been something else: short and printable.
+pub(super) fn excerpt(text: &[u8]) -> String {
+    const SHOWN: usize = 40;
+    let shown = String::from_utf8_lossy(&text[..text.len().min(SHOWN)]);
+    let mut shown: String = shown.chars().flat_map(char::escape_debug).collect();
+    if text.len() > SHOWN {
+        shown.push('…');
+    }
+    shown
+}

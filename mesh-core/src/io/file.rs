@@ -1,0 +1,249 @@
+//! A file in memory: what it holds, and the way back.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use super::contents::{Contents, Parsed};
+use super::error::{Fault, ReadError, ReadProblem, WriteError};
+use super::format::Format;
+use super::save::{check_finite, encode, write_atomic};
+use super::{obj, off, ply};
+use crate::{Point3, PolygonSoup, Positions, Vector3};
+
+/// A mesh file in memory, with everything needed to write it back with new positions.
+#[derive(Clone, Debug)]
+pub struct MeshFile {
+    path: PathBuf,
+    format: Format,
+    bytes: Vec<u8>,
+    soup: PolygonSoup,
+    contents: Contents,
+}
+
+/// The points of a file, without connectivity.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PointSet {
+    /// One point per vertex.
+    pub points: Vec<Point3>,
+    /// One unit normal per point, if the file has normals; zero where it has none.
+    pub normals: Option<Vec<Vector3>>,
+}
+
+/// Reads a mesh, and keeps its bytes so that it can be written back.
+///
+/// A file without a face is read (it may be a cloud); a file without a vertex is not.
+///
+/// ```
+/// use mesh_core::{io, Positions};
+/// let path = std::env::temp_dir().join("mesh_core_doc_triangle.obj");
+/// std::fs::write(&path, "# mine\nv 0 0 0\nv 1 0 0 # tip\nv 0 1 0\nf 1 2 3\n")?;
+///
+/// let file = io::read_mesh(&path)?;
+/// let (mesh, mut x) = file.soup().clone().into_halfedge()?;
+/// x.as_mut_slice()[1].x = 2.5;
+/// file.write(&path, &x)?;
+///
+/// let text = std::fs::read_to_string(&path)?;
+/// assert_eq!(text, "# mine\nv 0 0 0\nv 2.5 0 0 # tip\nv 0 1 0\nf 1 2 3\n");
+/// # std::fs::remove_file(&path)?;
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// The first thing that is wrong with the file, and where.
+pub fn read_mesh(path: impl AsRef<Path>) -> Result<MeshFile, ReadError> {
+    let path = path.as_ref();
+    let bytes = fs::read(path).map_err(|e| Fault::whole(ReadProblem::Io(e)).of(path))?;
+    MeshFile::from_bytes(path, bytes)
+}
+
+/// Reads the points and faces of a file, and nothing else.
+///
+/// # Errors
+/// As [`read_mesh`].
+pub fn read_soup(path: impl AsRef<Path>) -> Result<PolygonSoup, ReadError> {
+    read_mesh(path).map(|file| file.soup)
+}
+
+/// Reads the points of a file, and their normals if there are any.
+///
+/// # Errors
+/// As [`read_mesh`].
+pub fn read_points(path: impl AsRef<Path>) -> Result<PointSet, ReadError> {
+    let file = read_mesh(path)?;
+    Ok(PointSet {
+        normals: file.vertex_normals(),
+        points: file.soup.positions,
+    })
+}
+
+impl MeshFile {
+    /// Reads the content of a file called `path`; no file is opened.
+    ///
+    /// # Errors
+    /// As [`read_mesh`].
+    pub fn from_bytes(path: impl AsRef<Path>, bytes: Vec<u8>) -> Result<Self, ReadError> {
+        let path = path.as_ref();
+        let (format, parsed) = parse(&bytes, path).map_err(|fault| fault.of(path))?;
+        Ok(Self {
+            path: path.to_owned(),
+            format,
+            bytes,
+            soup: parsed.soup,
+            contents: parsed.contents,
+        })
+    }
+
+    /// The path it was read from.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// The format it is in.
+    pub fn format(&self) -> Format {
+        self.format
+    }
+
+    /// Its points and faces, in the order of the file.
+    pub fn soup(&self) -> &PolygonSoup {
+        &self.soup
+    }
+
+    /// Its points and faces, and nothing else.
+    pub fn into_soup(self) -> PolygonSoup {
+        self.soup
+    }
+
+    /// What else is in it.
+    pub fn contents(&self) -> &Contents {
+        &self.contents
+    }
+
+    /// One unit normal per vertex, if the file has normals; zero where a vertex has none.
+    pub fn vertex_normals(&self) -> Option<Vec<Vector3>> {
+        let mut normals = match self.format {
+            Format::Obj => obj::vertex_normals(&self.bytes, &self.soup),
+            Format::Off => off::vertex_normals(&self.bytes, &self.contents),
+            Format::Ply => ply::vertex_normals(&self.bytes, &self.contents),
+        }?;
+        for n in &mut normals {
+            *n = n.try_normalize(f64::MIN_POSITIVE).unwrap_or_default();
+        }
+        Some(normals)
+    }
+
+    /// Writes this file with the vertices at `x`, all or nothing.
+    ///
+    /// In the format of the source, everything but positions and normals is kept as it was. If the extension of `path`
+    /// names another format, points and faces are converted ([`Self::lost_in`] tells what is not).
+    ///
+    /// # Errors
+    /// Not one finite position per vertex, or a file that cannot be written.
+    pub fn write(&self, path: impl AsRef<Path>, x: &Positions) -> Result<(), WriteError> {
+        let path = path.as_ref();
+        write_atomic(path, &self.to_bytes(path, x)?)
+    }
+
+    /// What [`Self::write`] would write to `path`.
+    ///
+    /// # Errors
+    /// Not one finite position per vertex.
+    pub fn to_bytes(&self, path: impl AsRef<Path>, x: &Positions) -> Result<Vec<u8>, WriteError> {
+        let path = path.as_ref();
+        let (expected, found) = (self.soup.positions.len(), x.len());
+        if found != expected {
+            let path = path.to_owned();
+            return Err(WriteError::WrongCount {
+                path,
+                expected,
+                found,
+            });
+        }
+        check_finite(path, x.as_slice())?;
+
+        let format = self.output_format(path);
+        if format == self.format {
+            return self.rewrite(x.as_slice());
+        }
+        Ok(encode(
+            format,
+            &PolygonSoup {
+                positions: x.as_slice().to_vec(),
+                faces: self.soup.faces.clone(),
+            },
+        ))
+    }
+
+    /// The format in which this file would be written to `path`: the source's unless the extension names another.
+    fn output_format(&self, path: &Path) -> Format {
+        Format::of_extension(path).unwrap_or(self.format)
+    }
+
+    fn rewrite(&self, moved: &[Point3]) -> Result<Vec<u8>, WriteError> {
+        let (bytes, contents, rest) = (&self.bytes, &self.contents, &self.soup);
+        let rewritten = match self.format {
+            Format::Obj => Ok(obj::rewrite(bytes, contents, rest, moved)),
+            Format::Off => off::rewrite(bytes, contents, rest, moved),
+            Format::Ply => ply::rewrite(bytes, contents, rest, moved),
+        };
+        Ok(rewritten.map_err(|fault| fault.of(&self.path))?)
+    }
+
+    /// What would be lost if this file were written to `path`, in words; none if all is kept.
+    pub fn lost_in(&self, path: impl AsRef<Path>) -> Option<String> {
+        let format = self.output_format(path.as_ref());
+        if format == self.format {
+            return None;
+        }
+        let contents = &self.contents;
+        let counts = [
+            (contents.n_uvs, "texture coordinates"),
+            (contents.n_normals, "normals"),
+            (contents.n_colors, "vertex colours"),
+            (contents.n_lines_and_points, "line and point elements"),
+            (contents.objects.len(), "object names"),
+            (contents.groups.len(), "groups"),
+            (contents.materials.len(), "materials"),
+            (contents.n_smoothing_groups, "smoothing groups"),
+            (contents.n_comments, "comments"),
+        ];
+        let lost: Vec<String> = counts
+            .iter()
+            .filter(|(n, _)| *n > 0)
+            .map(|(n, what)| format!("{n} {what}"))
+            .collect();
+        let (from, to) = (self.format.name(), format.name());
+        (!lost.is_empty()).then(|| {
+            format!(
+                "from {from} to {to}, these are not kept: {}",
+                lost.join(", ")
+            )
+        })
+    }
+}
+
+fn parse(bytes: &[u8], path: &Path) -> Result<(Format, Parsed), Fault> {
+    if bytes.is_empty() {
+        return Err(Fault::whole(ReadProblem::Empty));
+    }
+    let format =
+        Format::detect(bytes, path).ok_or_else(|| Fault::whole(ReadProblem::UnknownFormat))?;
+    let name = format.name();
+    let is_text = matches!(format, Format::Obj | Format::Off);
+    if is_text && bytes.contains(&0) {
+        return Err(Fault::whole(ReadProblem::Binary { format: name }));
+    }
+    let parsed = match format {
+        Format::Obj => obj::read(bytes),
+        Format::Off => off::read(bytes),
+        Format::Ply => ply::read(bytes),
+    }?;
+    if parsed.soup.positions.is_empty() {
+        return Err(Fault::whole(ReadProblem::NoVertices { format: name }));
+    }
+    let most = u32::MAX as usize;
+    if parsed.soup.positions.len() >= most || parsed.soup.faces.len() >= most {
+        return Err(Fault::whole(ReadProblem::TooMany));
+    }
+    Ok((format, parsed))
+}

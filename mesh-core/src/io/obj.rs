@@ -1,0 +1,318 @@
+//! Wavefront OBJ, statement by statement. Written back, only `v` and `vn` lines differ from the source.
+
+use std::collections::BTreeSet;
+
+use super::contents::{polygon_area_vector, CarriedNormals, Contents, NameRuns, Parsed};
+use super::error::{excerpt, Fault, ReadProblem};
+use super::text::{integer, number, push_text, Cursor, Field, Splice};
+use crate::{Point3, PolygonSoup, Vector3};
+
+/// A statement: its keyword, with the cursor standing behind it.
+fn next_statement<'a>(cursor: &mut Cursor<'a>, mut on_comment: impl FnMut()) -> Option<Field<'a>> {
+    while cursor.left() > 0 {
+        if let Some(keyword) = cursor.field() {
+            return Some(keyword);
+        }
+        if cursor.is_at_comment() {
+            on_comment();
+        }
+        cursor.next_line();
+    }
+    None
+}
+
+/// Calls `visit` with each statement's keyword, the cursor standing behind it.
+fn each_statement<'a>(bytes: &'a [u8], mut visit: impl FnMut(&[u8], &mut Cursor<'a>)) {
+    let mut cursor = Cursor::new(bytes);
+    while let Some(keyword) = next_statement(&mut cursor, || ()) {
+        visit(keyword.text, &mut cursor);
+        cursor.next_line();
+    }
+}
+
+/// Reads a file: vertices and faces in their order, everything else counted.
+pub(super) fn read(bytes: &[u8]) -> Result<Parsed, Fault> {
+    let mut reader = Reader::default();
+    let mut cursor = Cursor::new(bytes);
+    let mut n_comments = 0;
+    while let Some(keyword) = next_statement(&mut cursor, || n_comments += 1) {
+        reader.statement(keyword, &mut cursor)?;
+        cursor.next_line();
+    }
+    reader.contents.n_comments = n_comments;
+    reader.finish(bytes)
+}
+
+#[derive(Default)]
+struct Reader {
+    soup: PolygonSoup,
+    contents: Contents,
+    objects: NameRuns,
+    groups: NameRuns,
+    materials: NameRuns,
+    smoothing: BTreeSet<Vec<u8>>,
+    /// The largest vertex row a face names, and where in the file.
+    highest: Option<(usize, usize)>,
+    corners: Vec<u32>,
+}
+
+impl Reader {
+    fn statement(&mut self, keyword: Field<'_>, cursor: &mut Cursor<'_>) -> Result<(), Fault> {
+        let n_faces = self.soup.faces.len();
+        match keyword.text {
+            b"v" => self.vertex(cursor)?,
+            b"f" | b"fo" => self.face(cursor)?,
+            b"vt" => self.contents.n_uvs += 1,
+            b"vn" => self.contents.n_normals += 1,
+            b"l" | b"p" => self.contents.n_lines_and_points += 1,
+            b"g" => {
+                let names = std::iter::from_fn(|| cursor.field()).map(|f| f.text);
+                self.groups.start(names, n_faces);
+            }
+            b"o" => self
+                .objects
+                .start(std::iter::once(cursor.rest_of_line()), n_faces),
+            b"usemtl" => self
+                .materials
+                .start(std::iter::once(cursor.rest_of_line()), n_faces),
+            b"s" => self.smoothing_group(cursor.rest_of_line()),
+            b"mtllib" => {
+                let name = String::from_utf8_lossy(cursor.rest_of_line()).into_owned();
+                self.contents.references.push(name);
+            }
+            _ => {}
+        }
+        Ok(())
+    }
+
+    fn vertex(&mut self, cursor: &mut Cursor<'_>) -> Result<(), Fault> {
+        let mut p = Point3::origin();
+        for axis in 0..3 {
+            let field = cursor.field();
+            p[axis] = cursor.coordinate(field)?;
+        }
+        self.soup.positions.push(p);
+
+        let n_more = std::iter::from_fn(|| cursor.field()).take(4).count();
+        self.contents.n_colors += usize::from(n_more >= 3);
+        Ok(())
+    }
+
+    fn face(&mut self, cursor: &mut Cursor<'_>) -> Result<(), Fault> {
+        self.corners.clear();
+        while let Some(field) = cursor.field() {
+            let row = self.corner(field, cursor)?;
+            if self
+                .highest
+                .is_none_or(|(highest, _)| row as usize > highest)
+            {
+                self.highest = Some((row as usize, field.at));
+            }
+            self.corners.push(row);
+        }
+        self.soup.faces.push(self.corners.clone());
+        Ok(())
+    }
+
+    /// The vertex row that a corner `v`, `v/vt`, `v//vn` or `v/vt/vn` names.
+    fn corner(&self, field: Field<'_>, cursor: &Cursor<'_>) -> Result<u32, Fault> {
+        let unexpected = || {
+            let expected = "a corner like 1, 1/2, 1//3 or 1/2/3";
+            let text = excerpt(field.text);
+            cursor.fault_at(field, ReadProblem::Unexpected { expected, text })
+        };
+        let index = Corner::parse(field.text).ok_or_else(unexpected)?.vertex;
+        let n_vertices = self.soup.positions.len();
+        row(index, n_vertices)
+            .and_then(|row| u32::try_from(row).ok())
+            .ok_or_else(|| cursor.fault_at(field, out_of_range(index, n_vertices)))
+    }
+
+    fn smoothing_group(&mut self, name: &[u8]) {
+        if name != b"off" && name != b"0" && !self.smoothing.contains(name) {
+            self.smoothing.insert(name.to_vec());
+        }
+    }
+
+    fn finish(mut self, bytes: &[u8]) -> Result<Parsed, Fault> {
+        let n_vertices = self.soup.positions.len();
+        if let Some((highest, at)) = self.highest.filter(|&(highest, _)| highest >= n_vertices) {
+            let problem = out_of_range(highest as i64 + 1, n_vertices);
+            return Err(Fault::in_text(bytes, at, problem));
+        }
+        let n_faces = self.soup.faces.len();
+        self.contents.objects = self.objects.finish(n_faces);
+        self.contents.groups = self.groups.finish(n_faces);
+        self.contents.materials = self.materials.finish(n_faces);
+        self.contents.n_smoothing_groups = self.smoothing.len();
+        Ok(Parsed {
+            soup: self.soup,
+            contents: self.contents,
+        })
+    }
+}
+
+fn out_of_range(index: i64, n_vertices: usize) -> ReadProblem {
+    ReadProblem::IndexOutOfRange {
+        index,
+        n_vertices,
+        first: 1,
+    }
+}
+
+/// The row that a 1-based index names; negative ones count back from the last of the `n` seen so far.
+fn row(index: i64, n: usize) -> Option<usize> {
+    match index {
+        0 => None,
+        1.. => usize::try_from(index - 1).ok(),
+        _ => n.checked_sub(usize::try_from(index.unsigned_abs()).ok()?),
+    }
+}
+
+/// A corner of a face, as the file counts.
+struct Corner {
+    vertex: i64,
+    normal: Option<i64>,
+}
+
+impl Corner {
+    fn parse(text: &[u8]) -> Option<Self> {
+        let slash = text.iter().position(|&b| b == b'/');
+        let vertex = integer(&text[..slash.unwrap_or(text.len())])?;
+        let Some(slash) = slash else {
+            return Some(Self {
+                vertex,
+                normal: None,
+            });
+        };
+        let mut others = text[slash + 1..].split(|&b| b == b'/');
+        let mut other = || match others.next() {
+            None | Some(b"") => Some(None),
+            Some(text) => integer(text).map(Some),
+        };
+        let (_uv, normal, nothing) = (other()?, other()?, other()?);
+        nothing.is_none().then_some(Self { vertex, normal })
+    }
+}
+
+/// The file with the vertices at `moved`: coordinates that did not change keep their text.
+pub(super) fn rewrite(
+    bytes: &[u8],
+    contents: &Contents,
+    rest: &PolygonSoup,
+    moved: &[Point3],
+) -> Vec<u8> {
+    let normals = (contents.n_normals > 0).then(|| carried_normals(bytes, rest, moved));
+    let mut splice = Splice::new(bytes);
+    let (mut vertex, mut normal) = (0, 0);
+    each_statement(bytes, |keyword, cursor| match keyword {
+        b"v" => {
+            let (from, to) = (rest.positions[vertex], moved[vertex]);
+            for axis in 0..3 {
+                let field = cursor
+                    .field()
+                    .filter(|_| from[axis].to_bits() != to[axis].to_bits());
+                if let Some(field) = field {
+                    splice.replace_text(field.range(), to[axis]);
+                }
+            }
+            vertex += 1;
+        }
+        b"vn" => {
+            if let Some(n) = normals.as_ref().and_then(|n| n.changed(normal)) {
+                replace_vector(&mut splice, cursor, n);
+            }
+            normal += 1;
+        }
+        _ => {}
+    });
+    splice.finish()
+}
+
+fn replace_vector(splice: &mut Splice<'_>, cursor: &mut Cursor<'_>, vector: Vector3) {
+    for &coordinate in &vector {
+        if let Some(field) = cursor.field() {
+            splice.replace_text(field.range(), coordinate);
+        }
+    }
+}
+
+fn carried_normals(bytes: &[u8], rest: &PolygonSoup, moved: &[Point3]) -> CarriedNormals {
+    let mut carried = CarriedNormals::new(normal_rows(bytes));
+    each_normal_corner(bytes, |face, _, normal| {
+        let corners = &rest.faces[face];
+        let areas = [&rest.positions[..], moved].map(|x| polygon_area_vector(x, corners));
+        carried.add_corner(normal, areas);
+    });
+    carried
+}
+
+/// The values of the `vn` lines; zero where one does not read as three numbers.
+fn normal_rows(bytes: &[u8]) -> Vec<Vector3> {
+    let mut rows = Vec::new();
+    each_statement(bytes, |keyword, cursor| {
+        if keyword == b"vn" {
+            let mut coordinate = || number(cursor.field()?.text).filter(|x| x.is_finite());
+            let [x, y, z] = [coordinate(), coordinate(), coordinate()];
+            rows.push(
+                x.zip(y)
+                    .zip(z)
+                    .map_or_else(Vector3::zeros, |((x, y), z)| Vector3::new(x, y, z)),
+            );
+        }
+    });
+    rows
+}
+
+/// Calls `visit` with the face, the corner within it, and the normal's row of each corner that names a normal.
+fn each_normal_corner(bytes: &[u8], mut visit: impl FnMut(usize, usize, usize)) {
+    let (mut face, mut n_normals) = (0, 0);
+    each_statement(bytes, |keyword, cursor| match keyword {
+        b"vn" => n_normals += 1,
+        b"f" | b"fo" => {
+            let fields = std::iter::from_fn(|| cursor.field());
+            for (corner, field) in fields.enumerate() {
+                let normal = Corner::parse(field.text).and_then(|c| c.normal);
+                if let Some(normal) = normal.and_then(|index| row(index, n_normals)) {
+                    visit(face, corner, normal);
+                }
+            }
+            face += 1;
+        }
+        _ => {}
+    });
+}
+
+/// One unit normal per vertex: the mean of those its corners name, or row by row in a file of as many normals as
+/// vertices and no face. Zero where a vertex has none.
+pub(super) fn vertex_normals(bytes: &[u8], soup: &PolygonSoup) -> Option<Vec<Vector3>> {
+    let rows = normal_rows(bytes);
+    if soup.faces.is_empty() {
+        return (rows.len() == soup.positions.len()).then_some(rows);
+    }
+    let mut sums = vec![Vector3::zeros(); soup.positions.len()];
+    let mut any = false;
+    each_normal_corner(bytes, |face, corner, normal| {
+        if let Some(n) = rows.get(normal) {
+            sums[soup.faces[face][corner] as usize] += n;
+            any = true;
+        }
+    });
+    any.then_some(sums)
+}
+
+/// A new file of `soup`.
+pub(super) fn write(soup: &PolygonSoup) -> Vec<u8> {
+    let mut out = Vec::with_capacity(64 * soup.positions.len());
+    for p in &soup.positions {
+        push_text(&mut out, format_args!("v {} {} {}\n", p.x, p.y, p.z));
+    }
+    for face in &soup.faces {
+        out.push(b'f');
+        for &v in face {
+            push_text(&mut out, format_args!(" {}", u64::from(v) + 1));
+        }
+        out.push(b'\n');
+    }
+    out
+}
