@@ -26,6 +26,14 @@ pub enum TopologyError {
     /// There is neither a face nor a point.
     #[error("there are no points")]
     NoPoints,
+    /// A point cloud with some other number of normals than points.
+    #[error("{n_normals} normals for {n_points} points: give one normal per point, or none at all")]
+    NormalCount {
+        /// How many normals there are.
+        n_normals: usize,
+        /// How many points there are.
+        n_points: usize,
+    },
     /// More elements than a 32-bit index can name.
     #[error("{count} {element} are more than the {max} that fit a 32-bit index")]
     TooMany {

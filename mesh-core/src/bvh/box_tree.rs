@@ -168,7 +168,11 @@ impl BoxTree {
     /// Visits the items whose box, rounded outwards, meets `bounds`, in the order of the tree.
     pub(crate) fn overlapping(&self, bounds: &Aabb, mut visit: impl FnMut(u32)) {
         let query = outer_box(&self.frame, bounds);
-        let mut stack = if self.nodes.is_empty() { vec![] } else { vec![0] };
+        let mut stack = if self.nodes.is_empty() {
+            vec![]
+        } else {
+            vec![0]
+        };
         while let Some(child) = stack.pop() {
             if child & ITEM != 0 {
                 visit(child ^ ITEM);
@@ -176,7 +180,11 @@ impl BoxTree {
             }
             let node = &self.nodes[child as usize];
             let lanes = (0..4).filter(|&lane| node.children[lane] != ABSENT);
-            stack.extend(lanes.filter(|&lane| node.meets(lane, &query)).map(|lane| node.children[lane]));
+            stack.extend(
+                lanes
+                    .filter(|&lane| node.meets(lane, &query))
+                    .map(|lane| node.children[lane]),
+            );
         }
     }
 }
@@ -217,7 +225,9 @@ impl Node {
 
     /// Whether the box of a child overlaps or touches `query`.
     fn meets(&self, lane: usize, query: &obvhs::aabb::Aabb) -> bool {
-        (0..3).all(|axis| self.min[axis][lane] <= query.max[axis] && query.min[axis] <= self.max[axis][lane])
+        (0..3).all(|axis| {
+            self.min[axis][lane] <= query.max[axis] && query.min[axis] <= self.max[axis][lane]
+        })
     }
 
     /// Where a ray enters the box of a child, in lengths of its direction; none if it misses.
@@ -328,11 +338,20 @@ struct QueryPoint {
 impl QueryPoint {
     /// Coordinates are clamped (1e18 sides of the shape away) so that their squares stay finite.
     fn new(p: &Point3) -> Self {
-        let p = [p.x, p.y, p.z].map(|c| c.max(-1e18).min(1e18));
+        let p = [p.x, p.y, p.z].map(|c| bounded(c, 1e18));
         Self {
             below: p.map(|c| Vec4::splat(round_down(c))),
             above: p.map(|c| Vec4::splat(round_up(c))),
         }
+    }
+}
+
+/// `c` between `−limit` and `limit`; 0 for NaN.
+fn bounded(c: f64, limit: f64) -> f64 {
+    if c.is_nan() {
+        0.0
+    } else {
+        c.clamp(-limit, limit)
     }
 }
 
@@ -356,10 +375,9 @@ fn round_up(x: f64) -> f32 {
 
 /// The smallest f32 box around `b` in the unit frame; bounded whatever the coordinates.
 fn outer_box(frame: &UnitFrame, b: &Aabb) -> obvhs::aabb::Aabb {
-    // f64::max and f64::min also turn NaN into a number.
     let [min, max] = [&b.min, &b.max].map(|p| {
         let p = frame.to_unit(p);
-        [p.x, p.y, p.z].map(|c| c.max(-2.0).min(2.0))
+        [p.x, p.y, p.z].map(|c| bounded(c, 2.0))
     });
     obvhs::aabb::Aabb::new(
         Vec3A::from_array(min.map(round_down)),

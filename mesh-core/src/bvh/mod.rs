@@ -44,7 +44,11 @@ impl TriangleBvh {
     pub fn new(corners: Vec<[Point3; 3]>) -> Self {
         let bounds = Aabb::of(corners.iter().flatten());
         let tree = BoxTree::new(bounds, corners.len(), |row| Aabb::of(&corners[row]));
-        let corners = tree.rows().iter().map(|&row| corners[row as usize]).collect();
+        let corners = tree
+            .rows()
+            .iter()
+            .map(|&row| corners[row as usize])
+            .collect();
         Self {
             tree,
             corners,
@@ -81,7 +85,11 @@ impl TriangleBvh {
     pub fn refit(&mut self, corners: impl IntoIterator<Item = [Point3; 3]>) {
         let mut n = 0;
         for (row, triangle) in corners.into_iter().enumerate() {
-            assert!(row < self.len(), "refit with more than {} triangles", self.len());
+            assert!(
+                row < self.len(),
+                "refit with more than {} triangles",
+                self.len()
+            );
             let slot = self.tree.slot(row as u32) as usize;
             self.corners[slot] = triangle;
             n += 1;
@@ -90,7 +98,8 @@ impl TriangleBvh {
 
         self.bounds = Aabb::of(self.corners.iter().flatten());
         let corners = &self.corners;
-        self.tree.refit(self.bounds, |slot| Aabb::of(&corners[slot]));
+        self.tree
+            .refit(self.bounds, |slot| Aabb::of(&corners[slot]));
     }
 
     /// The closest point over all triangles; none if there is no triangle.
@@ -137,7 +146,8 @@ impl TriangleBvh {
             if is_better && accept(row) {
                 best = Some(Best { row, slot, at });
             }
-            best.as_ref().map_or(f64::INFINITY, |b| b.at.distance_squared)
+            best.as_ref()
+                .map_or(f64::INFINITY, |b| b.at.distance_squared)
         };
 
         let bound = match hint {
@@ -163,7 +173,8 @@ impl TriangleBvh {
     ///
     /// Boxes are rounded outwards: none that meets `bounds` is left out, one a hair beside it may be visited.
     pub fn for_each_overlapping(&self, bounds: &Aabb, mut visit: impl FnMut(u32)) {
-        self.tree.overlapping(bounds, |slot| visit(self.tree.rows()[slot as usize]));
+        self.tree
+            .overlapping(bounds, |slot| visit(self.tree.rows()[slot as usize]));
     }
 
     /// The first triangle that the ray from `origin` along `direction` hits, from either side.
@@ -174,7 +185,10 @@ impl TriangleBvh {
         let ray = ray::Ray::new(origin, direction)?;
         let mut first: Option<RayHit> = None;
         self.tree.along(origin, direction, |slot| {
-            if let Some(hit) = ray.hit(&self.corners[slot as usize], self.tree.rows()[slot as usize]) {
+            if let Some(hit) = ray.hit(
+                &self.corners[slot as usize],
+                self.tree.rows()[slot as usize],
+            ) {
                 if first.as_ref().is_none_or(|f| hit.is_before(f)) {
                     first = Some(hit);
                 }

@@ -1,8 +1,10 @@
 //! Target surfaces: what can be draped onto. A target needs no connectivity.
 
 mod boundary;
+mod neighbourhood;
 mod orientation;
 mod point_cloud;
+mod propagate;
 mod triangle_soup;
 mod weld;
 

@@ -1,0 +1,131 @@
+//! The surroundings of each point of a cloud: tangent plane, spacing, and whether the surface ends there.
+
+use std::f64::consts::TAU;
+
+use nalgebra::{Matrix3, SymmetricEigen};
+use rayon::prelude::*;
+
+use super::point_cloud::PointTree;
+use crate::{Point3, Vector3};
+
+/// Neighbours that make up a surrounding. Fewer follow noise, more cut corners.
+const K: usize = 24;
+/// Neighbours that are kept for propagation.
+pub(super) const N_KEPT: usize = 8;
+/// No neighbour.
+pub(super) const NONE: u32 = u32::MAX;
+/// A gap between the directions to neighbours wider than this (140°) makes a boundary point: on a straight rim it is
+/// 180°. With these three values all points near the rim of a random flat cloud are found, and fewer than 0.3 % of
+/// those inside.
+const WIDE: f64 = TAU * 140.0 / 360.0;
+/// Neighbours nearer than this share of the farthest do not count for the gap: their directions are accidental.
+const NEAR: f64 = 0.4;
+/// A boundary runs on: at least this many kept neighbours must be on it, too.
+const N_COMPANIONS: usize = 1;
+/// Spread across the widest direction, below which neighbours lie on a line: as a share of the spread along it.
+const LINE: f64 = 1e-6;
+
+/// What the neighbours of a point tell about the surface there.
+#[derive(Clone, Debug)]
+pub(super) struct Neighbourhood {
+    /// Unit normal of the plane of least squares, of either sign; zero where neighbours lie on a line.
+    pub(super) normal: Vector3,
+    /// The nearest other points, nearest first, [`NONE`] where the cloud has no more.
+    pub(super) nearest: [u32; N_KEPT],
+    /// Mean squared distance to the neighbours: proportional to the area the point stands for.
+    pub(super) area: f64,
+    /// Whether neighbours leave a wide gap around the normal.
+    has_gap: bool,
+}
+
+/// The neighbourhood of each point. `normals` are used instead of estimated ones where they are not zero.
+pub(super) fn neighbourhoods(
+    tree: &PointTree,
+    points: &[Point3],
+    normals: Option<&[Vector3]>,
+) -> Vec<Neighbourhood> {
+    let all = (0..points.len()).into_par_iter().with_min_len(64);
+    all.map(|row| {
+        let mut neighbours = tree.nearest_rows(&points[row], K + 1);
+        neighbours.retain(|&n| n as usize != row);
+        neighbours.truncate(K);
+        neighbourhood(points, row, &neighbours, normals.map(|n| n[row]))
+    })
+    .collect()
+}
+
+/// Whether the surface ends at each point: a wide gap, and others with one beside it (after Bendels et al. 2006).
+pub(super) fn boundary(neighbourhoods: &[Neighbourhood]) -> Vec<bool> {
+    let has_gap = |&&n: &&u32| n != NONE && neighbourhoods[n as usize].has_gap;
+    neighbourhoods
+        .iter()
+        .map(|n| n.has_gap && n.nearest.iter().filter(has_gap).count() >= N_COMPANIONS)
+        .collect()
+}
+
+fn neighbourhood(
+    points: &[Point3],
+    row: usize,
+    neighbours: &[u32],
+    given: Option<Vector3>,
+) -> Neighbourhood {
+    let offsets: Vec<Vector3> = neighbours
+        .iter()
+        .map(|&n| points[n as usize] - points[row])
+        .collect();
+    let normal = given
+        .filter(|n| *n != Vector3::zeros())
+        .unwrap_or_else(|| plane_normal(&offsets));
+    let mut nearest = [NONE; N_KEPT];
+    for (kept, &n) in nearest.iter_mut().zip(neighbours) {
+        *kept = n;
+    }
+    Neighbourhood {
+        normal,
+        nearest,
+        area: offsets.iter().map(Vector3::norm_squared).sum::<f64>() / offsets.len().max(1) as f64,
+        has_gap: widest_gap(&offsets, &normal) > WIDE,
+    }
+}
+
+/// The direction in which the point and its neighbours spread least; zero where they lie on a line.
+fn plane_normal(offsets: &[Vector3]) -> Vector3 {
+    let mean = offsets.iter().sum::<Vector3>() / (offsets.len() + 1) as f64;
+    let spread = offsets
+        .iter()
+        .map(|o| o - mean)
+        .chain([-mean])
+        .map(|o| o * o.transpose())
+        .sum::<Matrix3<f64>>();
+    let eigen = SymmetricEigen::new(spread);
+    let mut order = [0, 1, 2];
+    order.sort_by(|&a, &b| eigen.eigenvalues[a].total_cmp(&eigen.eigenvalues[b]));
+    let [least, middle, most] = order;
+    if eigen.eigenvalues[middle] > LINE * eigen.eigenvalues[most] {
+        eigen.eigenvectors.column(least).into_owned()
+    } else {
+        Vector3::zeros()
+    }
+}
+
+/// The widest angle around `normal` without a neighbour; 0 without a normal.
+fn widest_gap(offsets: &[Vector3], normal: &Vector3) -> f64 {
+    let across = normal.cross(&Vector3::ith(normal.iamin(), 1.0));
+    let along = normal.cross(&across);
+    let near = NEAR * across.norm() * offsets.last().map_or(0.0, Vector3::norm);
+    let mut angles: Vec<f64> = offsets
+        .iter()
+        .map(|o| (o.dot(&across), o.dot(&along)))
+        .filter(|&(x, y)| x.hypot(y) > near)
+        .map(|(x, y)| y.atan2(x))
+        .collect();
+    angles.sort_by(f64::total_cmp);
+    let Some((first, last)) = angles.first().zip(angles.last()) else {
+        return 0.0;
+    };
+    let around = first + TAU - last;
+    angles
+        .windows(2)
+        .map(|w| w[1] - w[0])
+        .fold(around, f64::max)
+}
