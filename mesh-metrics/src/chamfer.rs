@@ -20,7 +20,8 @@ pub struct Chamfer {
 /// square stays near 0.2e-4.
 pub fn chamfer(distances: &DirectedDistances) -> Chamfer {
     let n = distances.of_samples.len().max(1) as f64;
-    let mean = |power: fn(f64) -> f64| distances.of_samples.iter().map(|&d| power(d)).sum::<f64>() / n;
+    let mean =
+        |power: fn(f64) -> f64| distances.of_samples.iter().map(|&d| power(d)).sum::<f64>() / n;
     Chamfer {
         mean_l2: mean(|d| d),
         mean_squared: mean(|d| d * d),
@@ -37,12 +38,27 @@ mod tests {
             of_samples: vec![1.0, 3.0],
             of_vertices: vec![100.0],
         };
-        assert_eq!(chamfer(&distances), Chamfer { mean_l2: 2.0, mean_squared: 5.0 });
+        assert_eq!(
+            chamfer(&distances),
+            Chamfer {
+                mean_l2: 2.0,
+                mean_squared: 5.0
+            }
+        );
     }
 
     #[test]
     fn no_sample_no_distance() {
-        let none = DirectedDistances { of_samples: vec![], of_vertices: vec![] };
-        assert_eq!(chamfer(&none), Chamfer { mean_l2: 0.0, mean_squared: 0.0 });
+        let none = DirectedDistances {
+            of_samples: vec![],
+            of_vertices: vec![],
+        };
+        assert_eq!(
+            chamfer(&none),
+            Chamfer {
+                mean_l2: 0.0,
+                mean_squared: 0.0
+            }
+        );
     }
 }

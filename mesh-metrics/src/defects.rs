@@ -1,7 +1,9 @@
 //! What is broken in a draped mesh: folds, skinny triangles, bent corners, faces turned inside out.
 
 use mesh_core::measure::{corner_angle, triangle_normal, triangle_quality};
-use mesh_core::{NormalSign, Point3, Positions, TargetSurface, Triangulation, TriangulationEdge, Vector3};
+use mesh_core::{
+    NormalSign, Point3, Positions, TargetSurface, Triangulation, TriangulationEdge, Vector3,
+};
 
 /// A triangle with `Q_f` below this is skinny (Mesh Draping, Eq. 4).
 pub const SKINNY_QUALITY: f64 = 0.1;
@@ -50,7 +52,9 @@ pub fn mean_angle_deviation(
     rest: &Positions,
     draped: &Positions,
 ) -> f64 {
-    let pairs = triangulation.corners(rest).zip(triangulation.corners(draped));
+    let pairs = triangulation
+        .corners(rest)
+        .zip(triangulation.corners(draped));
     let sum: f64 = pairs
         .flat_map(|(from, to)| (0..3).map(move |k| (angle(to, k) - angle(from, k)).abs()))
         .sum();
@@ -68,8 +72,8 @@ pub fn opposed_triangles(
     let centroids: Vec<Point3> = triangulation.corners(x).map(centroid).collect();
     let closest = target.closest_points(&centroids);
     let target_normals: Vec<_> = closest.iter().map(|c| target.normal(&c.location)).collect();
-    let is_known = target.normal_sign() == NormalSign::Oriented
-        && target_normals.iter().any(Option::is_some);
+    let is_known =
+        target.normal_sign() == NormalSign::Oriented && target_normals.iter().any(Option::is_some);
     is_known.then(|| {
         let ours = normals(triangulation, x);
         let is_opposed = |t: &usize| target_normals[*t].is_some_and(|n| n.dot(&ours[*t]) < 0.0);
@@ -100,7 +104,12 @@ mod tests {
 
     #[test]
     fn rest_has_no_fold_and_no_deviation() {
-        for soup in [shapes::icosphere(1), shapes::quad_sphere(3), shapes::open_grid(3, 3), shapes::cone(8)] {
+        for soup in [
+            shapes::icosphere(1),
+            shapes::quad_sphere(3),
+            shapes::open_grid(3, 3),
+            shapes::cone(8),
+        ] {
             let (mesh, rest) = soup.into_halfedge().unwrap();
             let triangles = Triangulation::new(&mesh, &rest);
             assert!(folded_edges(&triangles, &rest, &rest).is_empty());
@@ -113,8 +122,13 @@ mod tests {
         // A single quad: its far corner is brought over the diagonal, into the other triangle.
         let (mesh, rest) = shapes::open_grid(1, 1).into_halfedge().unwrap();
         let triangles = Triangulation::new(&mesh, &rest);
-        let [edge] = triangles.interior_edges()[..] else { panic!("a quad has one diagonal") };
-        let off_diagonal = mesh.vertices().find(|v| !edge.vertices.contains(v)).unwrap();
+        let [edge] = triangles.interior_edges()[..] else {
+            panic!("a quad has one diagonal")
+        };
+        let off_diagonal = mesh
+            .vertices()
+            .find(|v| !edge.vertices.contains(v))
+            .unwrap();
         let centre = Point3::new(0.5, 0.5, 0.0);
         let mut draped = rest.clone();
         draped[off_diagonal] = centre - (rest[off_diagonal] - centre) * 0.5;
@@ -144,7 +158,9 @@ mod tests {
     fn angle_deviation_of_a_sheared_triangle() {
         // (0,0) (1,0) (0,1) to (0,0) (1,0) (1,1): angles 90, 45, 45 to 45, 90, 45.
         let soup = mesh_core::PolygonSoup {
-            positions: [[0., 0., 0.], [1., 0., 0.], [0., 1., 0.]].map(Point3::from).to_vec(),
+            positions: [[0., 0., 0.], [1., 0., 0.], [0., 1., 0.]]
+                .map(Point3::from)
+                .to_vec(),
             faces: vec![vec![0, 1, 2]],
         };
         let (mesh, rest) = soup.into_halfedge().unwrap();

@@ -16,7 +16,11 @@ const LEAST_AREA_SHARE: f64 = 1e-14;
 /// out; 0 if that leaves none.
 /// Source: Mesh Draping, Eq. 6. Departures: the paper's `− 1` is taken in [`crate::q_transfer`]; the areas `a_f` are
 /// divided by their sum, without which the identity would not come out at 1.
-pub fn dirichlet_energy(triangulation: &Triangulation, rest: &Positions, draped: &Positions) -> f64 {
+pub fn dirichlet_energy(
+    triangulation: &Triangulation,
+    rest: &Positions,
+    draped: &Positions,
+) -> f64 {
     let area = total_area(triangulation, rest);
     if area == 0.0 {
         return 0.0;
@@ -33,7 +37,11 @@ pub fn dirichlet_energy(triangulation: &Triangulation, rest: &Positions, draped:
 /// no area.
 /// Source: the column "Dirichlet" of Mesh Draping, Table 1. Departures: the paper does not say how the two sizes are
 /// made equal; without it a shrunken result scores below 1.
-pub fn dirichlet_unit_area(triangulation: &Triangulation, rest: &Positions, draped: &Positions) -> f64 {
+pub fn dirichlet_unit_area(
+    triangulation: &Triangulation,
+    rest: &Positions,
+    draped: &Positions,
+) -> f64 {
     let [area, draped_area] = [rest, draped].map(|x| total_area(triangulation, x));
     if area == 0.0 || draped_area == 0.0 {
         return f64::INFINITY;
@@ -80,7 +88,9 @@ fn stretched_triangles<'a>(
     draped: &'a Positions,
 ) -> impl Iterator<Item = StretchedTriangle> + 'a {
     let least_area = LEAST_AREA_SHARE * total_area(triangulation, rest);
-    let pairs = triangulation.corners(rest).zip(triangulation.corners(draped));
+    let pairs = triangulation
+        .corners(rest)
+        .zip(triangulation.corners(draped));
     pairs.enumerate().filter_map(move |(row, (from, to))| {
         let e = edge_matrix(from);
         let area = 0.5 * e.determinant();
@@ -107,7 +117,13 @@ mod tests {
     use mesh_core::{shapes, PolygonSoup, Vector3};
 
     fn shapes_of_every_sort() -> Vec<PolygonSoup> {
-        vec![shapes::icosphere(1), shapes::quad_sphere(3), shapes::open_grid(3, 2), shapes::cone(7), shapes::prism(5)]
+        vec![
+            shapes::icosphere(1),
+            shapes::quad_sphere(3),
+            shapes::open_grid(3, 2),
+            shapes::cone(7),
+            shapes::prism(5),
+        ]
     }
 
     fn each(check: impl Fn(&HalfedgeMesh, &Triangulation, &Positions)) {
@@ -154,14 +170,18 @@ mod tests {
             let point = rest.map(|_| Point3::origin());
             assert_eq!(dirichlet_unit_area(triangles, rest, &point), f64::INFINITY);
             assert_eq!(dirichlet_unit_area(triangles, &point, rest), f64::INFINITY);
-            assert!(face_stretch(mesh, triangles, rest, &point).iter().all(|&s| s == 1.0));
+            assert!(face_stretch(mesh, triangles, rest, &point)
+                .iter()
+                .all(|&s| s == 1.0));
         });
     }
 
     #[test]
     fn flat_rest_triangle_does_not_count() {
         let soup = PolygonSoup {
-            positions: [[0., 0., 0.], [1., 0., 0.], [0., 1., 0.], [2., 0., 0.]].map(Point3::from).to_vec(),
+            positions: [[0., 0., 0.], [1., 0., 0.], [0., 1., 0.], [2., 0., 0.]]
+                .map(Point3::from)
+                .to_vec(),
             faces: vec![vec![0, 1, 2], vec![0, 3, 1]],
         };
         let (mesh, rest) = soup.into_halfedge().unwrap();

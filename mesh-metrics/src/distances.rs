@@ -1,6 +1,9 @@
 //! Distances between a draped mesh and its target, both ways, in the common frame.
 
-use mesh_core::{Location, Point3, Positions, SurfacePoint, TargetSurface, Triangulation, TriangleBvh, VertexData};
+use mesh_core::{
+    Location, Point3, Positions, SurfacePoint, TargetSurface, TriangleBvh, Triangulation,
+    VertexData,
+};
 use rand::{Rng, RngCore, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
@@ -9,7 +12,11 @@ use crate::normalize::common_frame;
 
 /// What the target is, and so what a distance to it means.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "snake_case"))]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize),
+    serde(rename_all = "snake_case")
+)]
 pub enum TargetKind {
     /// Triangles: distances both ways are exact, from point to surface.
     Surface,
@@ -70,9 +77,16 @@ impl SurfaceDistances {
         let to_draped = |points: &[Point3]| lengths(&bvh.closest_points(points), unit);
 
         let samples = sample_by_area(triangulation, draped, config.n_samples, &mut rng);
-        let vertices: Vec<Point3> = triangulation.used_vertices().iter().map(|&v| draped[v]).collect();
+        let vertices: Vec<Point3> = triangulation
+            .used_vertices()
+            .iter()
+            .map(|&v| draped[v])
+            .collect();
         let (target_samples, target_vertices) = match TargetKind::of(target) {
-            TargetKind::Surface => (target_sample(target, config.n_samples, &mut rng), target.vertices()),
+            TargetKind::Surface => (
+                target_sample(target, config.n_samples, &mut rng),
+                target.vertices(),
+            ),
             TargetKind::Cloud => (target.vertices(), Vec::new()),
         };
         Self {
@@ -95,7 +109,10 @@ pub fn vertex_distances(draped: &Positions, target: &dyn TargetSurface) -> Verte
 }
 
 fn lengths(closest: &[SurfacePoint], unit: f64) -> Vec<f64> {
-    closest.iter().map(|c| c.distance_squared.sqrt() * unit).collect()
+    closest
+        .iter()
+        .map(|c| c.distance_squared.sqrt() * unit)
+        .collect()
 }
 
 fn target_sample(target: &dyn TargetSurface, n: usize, rng: &mut dyn RngCore) -> Vec<Point3> {
@@ -103,7 +120,12 @@ fn target_sample(target: &dyn TargetSurface, n: usize, rng: &mut dyn RngCore) ->
 }
 
 /// `n` points, uniform by area, one in each of `n` equal shares of the area; over triangles alike if none has area.
-fn sample_by_area(triangulation: &Triangulation, x: &Positions, n: usize, rng: &mut ChaCha8Rng) -> Vec<Point3> {
+fn sample_by_area(
+    triangulation: &Triangulation,
+    x: &Positions,
+    n: usize,
+    rng: &mut ChaCha8Rng,
+) -> Vec<Point3> {
     let corners: Vec<[Point3; 3]> = triangulation.corners(x).collect();
     let Some(last) = corners.len().checked_sub(1) else {
         return Vec::new();

@@ -1,17 +1,22 @@
 //! Everything about one result, measured at once.
 
-use mesh_core::{FaceId, HalfedgeMesh, Landmark, Point3, Positions, TargetSurface, Triangulation, UnitFrame};
+use mesh_core::{
+    FaceId, HalfedgeMesh, Landmark, Point3, Positions, TargetSurface, Triangulation, UnitFrame,
+};
 
 use crate::chamfer::chamfer;
 use crate::defects::{
-    folded_edges, mean_angle_deviation, opposed_triangles, skinny_triangles, triangle_qualities, SKINNY_QUALITY,
+    folded_edges, mean_angle_deviation, opposed_triangles, skinny_triangles, triangle_qualities,
+    SKINNY_QUALITY,
 };
 use crate::dirichlet::{dirichlet_energy, dirichlet_unit_area, face_stretch};
 use crate::distances::{vertex_distances, DirectedDistances, SurfaceDistances, TargetKind};
 use crate::hausdorff::{directed_hausdorff_sampled, hausdorff_sampled, percentiles};
 use crate::normalize::{common_frame, own_frame};
 use crate::q_transfer::{q_transfer, HAUSDORFF_WEIGHT, PAPER_TAU};
-use crate::report::{Defects, DistanceSummary, LandmarkFit, LandmarkResidual, Places, Report, TruthError};
+use crate::report::{
+    Defects, DistanceSummary, LandmarkFit, LandmarkResidual, Places, Report, TruthError,
+};
 use crate::self_intersection::self_intersections;
 
 /// A result to be judged.
@@ -99,9 +104,18 @@ pub enum EvaluateError {
 /// assert!((report.dirichlet - 1.0).abs() < 1e-9 && report.hausdorff < 0.0101);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn evaluate(input: EvaluationInput<'_>, config: &EvaluationConfig) -> Result<Report, EvaluateError> {
+pub fn evaluate(
+    input: EvaluationInput<'_>,
+    config: &EvaluationConfig,
+) -> Result<Report, EvaluateError> {
     check(&input)?;
-    let EvaluationInput { mesh, rest, draped, target, .. } = input;
+    let EvaluationInput {
+        mesh,
+        rest,
+        draped,
+        target,
+        ..
+    } = input;
     let triangulation = Triangulation::new(mesh, rest);
     if triangulation.is_empty() {
         return Err(EvaluateError::NoTriangles);
@@ -126,7 +140,9 @@ pub fn evaluate(input: EvaluationInput<'_>, config: &EvaluationConfig) -> Result
         to_draped,
         defects,
         landmarks: landmark_fit(input.landmarks, draped, &frame),
-        truth: input.truth.map(|truth| truth_error(&triangulation, draped, truth, &frame)),
+        truth: input
+            .truth
+            .map(|truth| truth_error(&triangulation, draped, truth, &frame)),
         places,
         vertex_distances: vertex_distances(draped, target),
         face_stretch: face_stretch(mesh, &triangulation, rest, draped),
@@ -135,13 +151,24 @@ pub fn evaluate(input: EvaluationInput<'_>, config: &EvaluationConfig) -> Result
 
 fn check(input: &EvaluationInput<'_>) -> Result<(), EvaluateError> {
     let expected = input.mesh.n_vertices();
-    let named = [("rest positions", Some(input.rest)), ("draped positions", Some(input.draped)), ("true positions", input.truth)];
+    let named = [
+        ("rest positions", Some(input.rest)),
+        ("draped positions", Some(input.draped)),
+        ("true positions", input.truth),
+    ];
     for (positions, x) in named.into_iter().filter_map(|(name, x)| Some((name, x?))) {
         let found = x.len();
         if found != expected {
-            return Err(EvaluateError::VertexCount { positions, found, expected });
+            return Err(EvaluateError::VertexCount {
+                positions,
+                found,
+                expected,
+            });
         }
-        if let Some(vertex) = x.iter().position(|p| !p.coords.iter().all(|c| c.is_finite())) {
+        if let Some(vertex) = x
+            .iter()
+            .position(|p| !p.coords.iter().all(|c| c.is_finite()))
+        {
             return Err(EvaluateError::NonFiniteCoordinate { positions, vertex });
         }
     }
@@ -162,22 +189,39 @@ fn summary(distances: &DirectedDistances) -> DistanceSummary {
 }
 
 /// Dirichlet energy with rest in its own unit frame and draped in the common one: sizes are not made equal.
-fn raw_dirichlet(triangulation: &Triangulation, input: &EvaluationInput<'_>, frame: &UnitFrame) -> f64 {
+fn raw_dirichlet(
+    triangulation: &Triangulation,
+    input: &EvaluationInput<'_>,
+    frame: &UnitFrame,
+) -> f64 {
     let scale = own_frame(triangulation, input.rest).scale / frame.scale;
     dirichlet_energy(triangulation, input.rest, input.draped) * scale * scale
 }
 
 fn defects(triangulation: &Triangulation, input: &EvaluationInput<'_>) -> (Defects, Places) {
-    let EvaluationInput { rest, draped, target, .. } = *input;
+    let EvaluationInput {
+        rest,
+        draped,
+        target,
+        ..
+    } = *input;
     let quality = triangle_qualities(triangulation, draped);
     let rest_quality = triangle_qualities(triangulation, rest);
     let skinny = skinny_triangles(triangulation, draped);
-    let skinny_new: Vec<usize> = skinny.iter().copied().filter(|&t| rest_quality[t] >= SKINNY_QUALITY).collect();
+    let skinny_new: Vec<usize> = skinny
+        .iter()
+        .copied()
+        .filter(|&t| rest_quality[t] >= SKINNY_QUALITY)
+        .collect();
     let folds = folded_edges(triangulation, rest, draped);
     let opposed = opposed_triangles(triangulation, draped, target);
     let crossings = self_intersections(triangulation, draped);
     let rest_crossings = self_intersections(triangulation, rest);
-    let crossings_new: Vec<_> = crossings.iter().copied().filter(|pair| rest_crossings.binary_search(pair).is_err()).collect();
+    let crossings_new: Vec<_> = crossings
+        .iter()
+        .copied()
+        .filter(|pair| rest_crossings.binary_search(pair).is_err())
+        .collect();
 
     let defects = Defects {
         angle_deviation_deg: mean_angle_deviation(triangulation, rest, draped),
@@ -202,13 +246,20 @@ fn defects(triangulation: &Triangulation, input: &EvaluationInput<'_>) -> (Defec
 
 /// The faces that the triangles are part of, each once, in order.
 fn faces_of(triangulation: &Triangulation, triangles: Vec<usize>) -> Vec<FaceId> {
-    let mut faces: Vec<FaceId> = triangles.into_iter().map(|t| triangulation.parent(t)).collect();
+    let mut faces: Vec<FaceId> = triangles
+        .into_iter()
+        .map(|t| triangulation.parent(t))
+        .collect();
     faces.sort_unstable();
     faces.dedup();
     faces
 }
 
-fn landmark_fit(landmarks: &[Landmark], draped: &Positions, frame: &UnitFrame) -> Option<LandmarkFit> {
+fn landmark_fit(
+    landmarks: &[Landmark],
+    draped: &Positions,
+    frame: &UnitFrame,
+) -> Option<LandmarkFit> {
     let residual = |landmark: &Landmark| LandmarkResidual {
         name: landmark.name.clone(),
         distance: distance(&landmark.source.position(draped), &landmark.target, frame),
@@ -216,16 +267,29 @@ fn landmark_fit(landmarks: &[Landmark], draped: &Positions, frame: &UnitFrame) -
     let residuals: Vec<LandmarkResidual> = landmarks.iter().map(residual).collect();
     let n = residuals.len() as f64;
     (!residuals.is_empty()).then(|| LandmarkFit {
-        rms: (residuals.iter().map(|r| r.distance * r.distance).sum::<f64>() / n).sqrt(),
+        rms: (residuals
+            .iter()
+            .map(|r| r.distance * r.distance)
+            .sum::<f64>()
+            / n)
+            .sqrt(),
         max: residuals.iter().map(|r| r.distance).fold(0.0, f64::max),
         residuals,
     })
 }
 
 /// Distance of the vertices in use from where they belong.
-fn truth_error(triangulation: &Triangulation, draped: &Positions, truth: &Positions, frame: &UnitFrame) -> TruthError {
+fn truth_error(
+    triangulation: &Triangulation,
+    draped: &Positions,
+    truth: &Positions,
+    frame: &UnitFrame,
+) -> TruthError {
     let used = triangulation.used_vertices();
-    let errors: Vec<f64> = used.iter().map(|&v| distance(&draped[v], &truth[v], frame)).collect();
+    let errors: Vec<f64> = used
+        .iter()
+        .map(|&v| distance(&draped[v], &truth[v], frame))
+        .collect();
     let [p95, max] = percentiles(errors.iter().copied(), [0.95, 1.0]);
     TruthError {
         mean: errors.iter().sum::<f64>() / errors.len() as f64,

@@ -22,7 +22,10 @@ pub fn directed_hausdorff_sampled(distances: &DirectedDistances) -> f64 {
 /// The values below which the shares `shares` of the distances lie, interpolated linearly between neighbours.
 ///
 /// `shares` are in [0, 1]. 0 where nothing was measured.
-pub fn percentiles<const N: usize>(distances: impl Iterator<Item = f64>, shares: [f64; N]) -> [f64; N] {
+pub fn percentiles<const N: usize>(
+    distances: impl Iterator<Item = f64>,
+    shares: [f64; N],
+) -> [f64; N] {
     let mut sorted: Vec<f64> = distances.collect();
     sorted.sort_unstable_by(f64::total_cmp);
     shares.map(|share| {
@@ -40,7 +43,10 @@ mod tests {
     #[test]
     fn percentiles_interpolate() {
         let values = [4.0, 1.0, 3.0, 2.0];
-        assert_eq!(percentiles(values.into_iter(), [0.0, 0.5, 1.0]), [1.0, 2.5, 4.0]);
+        assert_eq!(
+            percentiles(values.into_iter(), [0.0, 0.5, 1.0]),
+            [1.0, 2.5, 4.0]
+        );
         assert_eq!(percentiles(std::iter::empty(), [0.5]), [0.0]);
     }
 

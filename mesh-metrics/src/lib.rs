@@ -13,7 +13,6 @@
 //! Polygons are measured on the triangles of [`mesh_core::Triangulation`], chosen once at rest. Another judge may cut
 //! a polygon with five or more sides, or a concave quad, otherwise; its figures then differ slightly.
 
-mod box_tree;
 mod chamfer;
 mod defects;
 mod dirichlet;
@@ -28,8 +27,8 @@ mod table;
 
 pub use chamfer::{chamfer, Chamfer};
 pub use defects::{
-    folded_edges, mean_angle_deviation, opposed_triangles, skinny_triangles, triangle_qualities, FOLD_COSINE,
-    SKINNY_QUALITY,
+    folded_edges, mean_angle_deviation, opposed_triangles, skinny_triangles, triangle_qualities,
+    FOLD_COSINE, SKINNY_QUALITY,
 };
 pub use dirichlet::{dirichlet_energy, dirichlet_unit_area, face_stretch};
 pub use distances::{vertex_distances, DirectedDistances, SurfaceDistances, TargetKind};
@@ -37,5 +36,7 @@ pub use evaluate::{evaluate, EvaluateError, EvaluationConfig, EvaluationInput};
 pub use hausdorff::{directed_hausdorff_sampled, hausdorff_sampled, percentiles};
 pub use normalize::{common_frame, own_frame, total_area};
 pub use q_transfer::{q_transfer, HAUSDORFF_WEIGHT, PAPER_TAU};
-pub use report::{Defects, DistanceSummary, LandmarkFit, LandmarkResidual, Places, Report, TruthError};
+pub use report::{
+    Defects, DistanceSummary, LandmarkFit, LandmarkResidual, Places, Report, TruthError,
+};
 pub use self_intersection::self_intersections;

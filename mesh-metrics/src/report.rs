@@ -178,7 +178,10 @@ impl Report {
             ("skinny_new", defects.skinny_new as f64),
             ("folds", defects.folds as f64),
             ("self_intersections", defects.self_intersections as f64),
-            ("self_intersections_new", defects.self_intersections_new as f64),
+            (
+                "self_intersections_new",
+                defects.self_intersections_new as f64,
+            ),
             ("vertices", self.n_vertices as f64),
             ("faces", self.n_faces as f64),
         ];
@@ -187,7 +190,11 @@ impl Report {
             figures.extend([("landmark_rms", fit.rms), ("landmark_max", fit.max)]);
         }
         if let Some(error) = &self.truth {
-            figures.extend([("truth_mean", error.mean), ("truth_p95", error.p95), ("truth_max", error.max)]);
+            figures.extend([
+                ("truth_mean", error.mean),
+                ("truth_p95", error.p95),
+                ("truth_max", error.max),
+            ]);
         }
         figures
     }

@@ -1,10 +1,8 @@
 //! Pairs of triangles of one mesh that pass through each other.
 
-use mesh_core::{Aabb, Point3, Positions, Triangulation};
+use mesh_core::{Aabb, Point3, Positions, TriangleBvh, Triangulation};
 use rayon::prelude::*;
 use robust::{orient3d, Coord3D};
-
-use crate::box_tree::BoxTree;
 
 /// The pairs of triangles that pass through each other at `x`: rows, the lower first, in order.
 ///
@@ -12,20 +10,25 @@ use crate::box_tree::BoxTree;
 /// share a corner or an edge, or overlap within one plane do not count: neighbours never do unless one pierces the
 /// other, whether or not they name the same vertices.
 pub fn self_intersections(triangulation: &Triangulation, x: &Positions) -> Vec<[usize; 2]> {
-    let corners: Vec<[Point3; 3]> = triangulation.corners(x).collect();
-    let boxes: Vec<Aabb> = corners.iter().map(Aabb::of).collect();
-    let tree = BoxTree::new(&boxes);
-    let pairs_of = |one: usize| {
+    let bvh = TriangleBvh::new(triangulation.corners(x).collect());
+    let pairs_of = |one: u32| {
+        let corners = bvh.triangle(one);
         let mut others = Vec::new();
-        tree.for_each_overlapping(&boxes[one], |other| {
-            if one < other && is_intersecting(&corners[one], &corners[other]) {
-                others.push(other);
+        bvh.for_each_overlapping(&Aabb::of(&corners), |other| {
+            if one < other && is_intersecting(&corners, &bvh.triangle(other)) {
+                others.push(other as usize);
             }
         });
         others.sort_unstable();
-        others.into_iter().map(move |other| [one, other]).collect()
+        others
+            .into_iter()
+            .map(move |other| [one as usize, other])
+            .collect()
     };
-    let pairs: Vec<Vec<[usize; 2]>> = (0..corners.len()).into_par_iter().map(pairs_of).collect();
+    let pairs: Vec<Vec<[usize; 2]>> = (0..bvh.len() as u32)
+        .into_par_iter()
+        .map(pairs_of)
+        .collect();
     pairs.concat()
 }
 
@@ -39,13 +42,21 @@ fn is_piercing(p: Point3, q: Point3, &[a, b, c]: &[Point3; 3]) -> bool {
     if orientation(a, b, c, p) * orientation(a, b, c, q) != -1 {
         return false;
     }
-    let sides = [orientation(p, q, a, b), orientation(p, q, b, c), orientation(p, q, c, a)];
+    let sides = [
+        orientation(p, q, a, b),
+        orientation(p, q, b, c),
+        orientation(p, q, c, a),
+    ];
     sides == [1, 1, 1] || sides == [-1, -1, -1]
 }
 
 /// The side of the plane `abc` that `d` is on, exactly: −1, 0 or 1.
 fn orientation(a: Point3, b: Point3, c: Point3, d: Point3) -> i8 {
-    let [a, b, c, d] = [a, b, c, d].map(|p| Coord3D { x: p.x, y: p.y, z: p.z });
+    let [a, b, c, d] = [a, b, c, d].map(|p| Coord3D {
+        x: p.x,
+        y: p.y,
+        z: p.z,
+    });
     let volume = orient3d(a, b, c, d);
     i8::from(volume > 0.0) - i8::from(volume < 0.0)
 }
@@ -61,7 +72,12 @@ mod tests {
         for shape in shapes {
             let first = all.positions.len() as u32;
             all.positions.extend(&shape.positions);
-            all.faces.extend(shape.faces.iter().map(|f| f.iter().map(|v| v + first).collect::<Vec<_>>()));
+            all.faces.extend(
+                shape
+                    .faces
+                    .iter()
+                    .map(|f| f.iter().map(|v| v + first).collect::<Vec<_>>()),
+            );
         }
         let (mesh, rest) = all.into_halfedge().unwrap();
         self_intersections(&Triangulation::new(&mesh, &rest), &rest)
@@ -83,7 +99,13 @@ mod tests {
 
     #[test]
     fn sound_shapes_have_none() {
-        for shape in [shapes::icosphere(2), shapes::quad_sphere(6), shapes::open_grid(5, 5), shapes::cone(9), shapes::prism(7)] {
+        for shape in [
+            shapes::icosphere(2),
+            shapes::quad_sphere(6),
+            shapes::open_grid(5, 5),
+            shapes::cone(9),
+            shapes::prism(7),
+        ] {
             assert_eq!(pairs_of(&[shape]), [] as [[usize; 2]; 0]);
         }
     }
@@ -103,7 +125,15 @@ mod tests {
     fn a_neighbour_that_pierces_counts() {
         // Two triangles share vertex 0; the far side of the second stabs through the first.
         let soup = PolygonSoup {
-            positions: [[0., 0., 0.], [4., 0., 0.], [0., 4., 0.], [1., 1., -1.], [1.5, 1., 1.]].map(Point3::from).to_vec(),
+            positions: [
+                [0., 0., 0.],
+                [4., 0., 0.],
+                [0., 4., 0.],
+                [1., 1., -1.],
+                [1.5, 1., 1.],
+            ]
+            .map(Point3::from)
+            .to_vec(),
             faces: vec![vec![0, 1, 2], vec![0, 3, 4]],
         };
         assert_eq!(pairs_of(&[soup]), [[0, 1]]);

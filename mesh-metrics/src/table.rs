@@ -12,9 +12,21 @@ const TEN_THOUSANDTHS: f64 = 1e4;
 
 impl fmt::Display for Report {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(f, "{:<26}{:>10.4}   1 is best", "Q_transfer", self.q_transfer)?;
-        writeln!(f, "{:<26}{:>10.4}   1 is undistorted", "Dirichlet, equal areas", self.dirichlet)?;
-        writeln!(f, "{:<26}{:>10.4}   each in its box", "Dirichlet, raw", self.dirichlet_raw)?;
+        writeln!(
+            f,
+            "{:<26}{:>10.4}   1 is best",
+            "Q_transfer", self.q_transfer
+        )?;
+        writeln!(
+            f,
+            "{:<26}{:>10.4}   1 is undistorted",
+            "Dirichlet, equal areas", self.dirichlet
+        )?;
+        writeln!(
+            f,
+            "{:<26}{:>10.4}   each in its box",
+            "Dirichlet, raw", self.dirichlet_raw
+        )?;
         writeln!(f)?;
         write_distances(f, self)?;
         writeln!(f)?;
@@ -26,7 +38,10 @@ impl fmt::Display for Report {
         if let Some(error) = &self.truth {
             let [mean, p95, max] = [error.mean, error.p95, error.max].map(|d| d * HUNDREDTHS);
             writeln!(f)?;
-            writeln!(f, "from the truth, e-2        mean {mean:.3}, 95 % below {p95:.3}, worst {max:.3}")?;
+            writeln!(
+                f,
+                "from the truth, e-2        mean {mean:.3}, 95 % below {p95:.3}, worst {max:.3}"
+            )?;
         }
         Ok(())
     }
@@ -35,8 +50,20 @@ impl fmt::Display for Report {
 fn write_distances(f: &mut fmt::Formatter<'_>, report: &Report) -> fmt::Result {
     let (there, back) = (&report.to_target, &report.to_draped);
     let rows = [
-        ("largest (Hausdorff), e-2", HUNDREDTHS, there.max, back.max, Some(report.hausdorff)),
-        ("mean, e-2", HUNDREDTHS, there.mean_l2, back.mean_l2, Some(report.mean_l2_sum())),
+        (
+            "largest (Hausdorff), e-2",
+            HUNDREDTHS,
+            there.max,
+            back.max,
+            Some(report.hausdorff),
+        ),
+        (
+            "mean, e-2",
+            HUNDREDTHS,
+            there.mean_l2,
+            back.mean_l2,
+            Some(report.mean_l2_sum()),
+        ),
         (
             "mean square, e-4",
             TEN_THOUSANDTHS,
@@ -48,7 +75,11 @@ fn write_distances(f: &mut fmt::Formatter<'_>, report: &Report) -> fmt::Result {
         ("90 % below, e-2", HUNDREDTHS, there.p90, back.p90, None),
         ("99 % below, e-2", HUNDREDTHS, there.p99, back.p99, None),
     ];
-    writeln!(f, "{:<26}{:>10}{:>12}{:>12}", "distance", "to target", "to result", "max or sum")?;
+    writeln!(
+        f,
+        "{:<26}{:>10}{:>12}{:>12}",
+        "distance", "to target", "to result", "max or sum"
+    )?;
     for (name, unit, there, back, both) in rows {
         write!(f, "{name:<26}{:>10.4}{:>12.4}", there * unit, back * unit)?;
         match both {
@@ -68,7 +99,11 @@ fn write_distances(f: &mut fmt::Formatter<'_>, report: &Report) -> fmt::Result {
 fn write_defects(f: &mut fmt::Formatter<'_>, defects: &Defects) -> fmt::Result {
     let count = |f: &mut fmt::Formatter<'_>, name: &str, n: usize| writeln!(f, "{name:<26}{n:>10}");
     count(f, "folded edges", defects.folds)?;
-    writeln!(f, "{:<26}{:>10}   {} in all", "skinny triangles, new", defects.skinny_new, defects.skinny)?;
+    writeln!(
+        f,
+        "{:<26}{:>10}   {} in all",
+        "skinny triangles, new", defects.skinny_new, defects.skinny
+    )?;
     if let Some(n) = defects.opposed_faces {
         count(f, "triangles facing inwards", n)?;
     }
@@ -78,15 +113,26 @@ fn write_defects(f: &mut fmt::Formatter<'_>, defects: &Defects) -> fmt::Result {
         "self-intersections, new", defects.self_intersections_new, defects.self_intersections
     )?;
     let (min, mean) = (defects.quality_min, defects.quality_mean);
-    writeln!(f, "{:<26}{mean:>10.4}   worst {min:.4}", "triangle quality, mean")?;
-    writeln!(f, "{:<26}{:>10.4}   degrees", "corner angle change, mean", defects.angle_deviation_deg)
+    writeln!(
+        f,
+        "{:<26}{mean:>10.4}   worst {min:.4}",
+        "triangle quality, mean"
+    )?;
+    writeln!(
+        f,
+        "{:<26}{:>10.4}   degrees",
+        "corner angle change, mean", defects.angle_deviation_deg
+    )
 }
 
 fn write_landmarks(f: &mut fmt::Formatter<'_>, fit: &LandmarkFit) -> fmt::Result {
     let [rms, max] = [fit.rms, fit.max].map(|d| d * HUNDREDTHS);
     writeln!(f, "landmarks, e-2             rms {rms:.3}, worst {max:.3}")?;
     for (row, residual) in fit.residuals.iter().enumerate() {
-        let name = residual.name.clone().unwrap_or_else(|| format!("landmark {row}"));
+        let name = residual
+            .name
+            .clone()
+            .unwrap_or_else(|| format!("landmark {row}"));
         writeln!(f, "  {name:<24}{:>10.4}", residual.distance * HUNDREDTHS)?;
     }
     Ok(())

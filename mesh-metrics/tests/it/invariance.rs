@@ -2,8 +2,8 @@
 
 use mesh_core::{shapes, HalfedgeMesh, Point3, PolygonSoup, Positions, Triangulation, Vector3};
 use mesh_metrics::{
-    dirichlet_energy, dirichlet_unit_area, folded_edges, mean_angle_deviation, q_transfer, self_intersections,
-    skinny_triangles,
+    dirichlet_energy, dirichlet_unit_area, folded_edges, mean_angle_deviation, q_transfer,
+    self_intersections, skinny_triangles,
 };
 use nalgebra::Rotation3;
 use proptest::prelude::*;
@@ -23,7 +23,10 @@ fn draped() -> impl Strategy<Value = (HalfedgeMesh, Positions, Positions)> {
     let noise = prop::collection::vec(prop::array::uniform3(-0.6..0.6), 100);
     (shape(), noise).prop_map(|(soup, noise)| {
         let (mesh, rest) = soup.into_halfedge().unwrap();
-        let moved = rest.iter().zip(noise.iter().cycle()).map(|(p, &n)| p + Vector3::from(n));
+        let moved = rest
+            .iter()
+            .zip(noise.iter().cycle())
+            .map(|(p, &n)| p + Vector3::from(n));
         let draped = moved.collect();
         (mesh, rest, draped)
     })
@@ -31,7 +34,8 @@ fn draped() -> impl Strategy<Value = (HalfedgeMesh, Positions, Positions)> {
 
 fn similarity() -> impl Strategy<Value = (Rotation3<f64>, f64, Vector3)> {
     let vector = || prop::array::uniform3(-3.0..3.0).prop_map(Vector3::from);
-    (vector(), 0.1..10.0, vector()).prop_map(|(axis, scale, shift)| (Rotation3::new(axis), scale, shift))
+    (vector(), 0.1..10.0, vector())
+        .prop_map(|(axis, scale, shift)| (Rotation3::new(axis), scale, shift))
 }
 
 fn relative(a: f64, b: f64) -> f64 {
@@ -101,7 +105,11 @@ fn is_crossing(s: &[Point3; 3], [a, b, c]: &[Point3; 3]) -> bool {
         let (p, q) = (s[k], s[(k + 1) % 3]);
         let columns = nalgebra::Matrix3::from_columns(&[b - a, c - a, p - q]);
         let is_shared = [p, q].iter().any(|e| e == a || e == b || e == c);
-        let inside = |w: Vector3| w.x > 0.0 && w.y > 0.0 && w.x + w.y < 1.0 && w.z > 0.0 && w.z < 1.0;
-        !is_shared && columns.try_inverse().is_some_and(|inverse| inside(inverse * (p - a)))
+        let inside =
+            |w: Vector3| w.x > 0.0 && w.y > 0.0 && w.x + w.y < 1.0 && w.z > 0.0 && w.z < 1.0;
+        !is_shared
+            && columns
+                .try_inverse()
+                .is_some_and(|inverse| inside(inverse * (p - a)))
     })
 }
