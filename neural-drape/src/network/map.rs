@@ -15,7 +15,7 @@ pub(super) const BLOCK_SIZE: usize = 256;
 /// r is half the longest side of the shape the network was made for. Points outside that shape are moved too; what
 /// the network does far from it is not controlled.
 #[derive(Clone, PartialEq, Debug)]
-pub(crate) struct NetworkMap {
+pub struct NetworkMap {
     /// Frame of the shape the network was made for.
     pub(crate) frame: UnitFrame,
     /// Factor between what the last layer puts out and an offset in half longest sides.
@@ -51,6 +51,38 @@ impl NetworkMap {
                     .collect::<Vec<_>>()
             })
             .collect()
+    }
+
+    /// The same map where the shape it was made for has been brought from its coordinates into those of `frame`:
+    /// with `frame.from_unit` on both sides.
+    pub(crate) fn from_unit(self, frame: &UnitFrame) -> Self {
+        Self {
+            frame: UnitFrame {
+                center: frame.from_unit(&self.frame.center),
+                scale: frame.scale * self.frame.scale,
+            },
+            ..self
+        }
+    }
+
+    /// Whether every layer takes what the one before gives, from the features to three coordinates.
+    pub(crate) fn is_consistent(&self) -> bool {
+        let fits = |layer: &Layer| {
+            !layer.bias.is_empty()
+                && !layer.weight.is_empty()
+                && layer.weight.len() % layer.bias.len() == 0
+        };
+        let (Some(first), Some(last)) = (self.layers.first(), self.layers.last()) else {
+            return false;
+        };
+        self.frame.scale > 0.0
+            && self.layers.iter().all(fits)
+            && (3..=self.waves.n_features()).contains(&first.n_inputs())
+            && last.n_outputs() == 3
+            && self
+                .layers
+                .windows(2)
+                .all(|pair| pair[0].n_outputs() == pair[1].n_inputs())
     }
 
     /// A point as the network sees it: ±1 over the shape's longest side.

@@ -9,6 +9,7 @@ mod pass;
 mod tests;
 
 pub use config::{Encoding, Frequencies, NetworkConfig, Reveal};
+pub use map::NetworkMap;
 
 use std::sync::{Arc, Mutex};
 
@@ -18,8 +19,8 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
 use crate::{DrapeError, Parametrization};
-use encoding::Waves;
-use map::NetworkMap;
+pub(crate) use encoding::{WaveKind, Waves};
+pub(crate) use map::Layer;
 use parameters::{lock, Adam, Evaluation, Parameters};
 use pass::Pass;
 
@@ -82,11 +83,6 @@ impl Network {
         })
     }
 
-    /// The map from initial positions to the present ones, without what is hidden.
-    pub(crate) fn map(&self) -> NetworkMap {
-        lock(&self.evaluation).map.clone()
-    }
-
     /// dL/dθ for `gradient` = dL/dx.
     fn gradients(&self, gradient: &VertexData<Vector3>) -> Result<Gradients<f32, Cpu>, CpuError> {
         let unit = lock(&self.evaluation).map.output_unit();
@@ -131,8 +127,14 @@ impl Parametrization for Network {
         Ok(())
     }
 
-    fn set_progress(&mut self, progress: f64) {
+    fn set_progress(&mut self, progress: f64) -> Result<(), DrapeError> {
         self.progress = progress;
+        Ok(())
+    }
+
+    /// The map from initial positions to the present ones, without what is hidden.
+    fn network(&self) -> Option<NetworkMap> {
+        Some(lock(&self.evaluation).map.clone())
     }
 }
 

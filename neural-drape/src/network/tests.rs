@@ -50,7 +50,7 @@ fn field(x: &Positions) -> VertexData<Vector3> {
 /// A network that has left the identity, halfway through its encoding.
 fn trained(config: &NetworkConfig, x0: &Positions) -> Network {
     let mut network = Network::new(x0, config, 3).unwrap();
-    network.set_progress(0.3);
+    network.set_progress(0.3).unwrap();
     for _ in 0..20 {
         let gradient = field(network.positions());
         network.descend(&gradient, 1e-2).unwrap();
@@ -72,7 +72,7 @@ fn starts_exactly_at_the_identity() {
     for config in configs() {
         let mut network = Network::new(&x0, &config, 3).unwrap();
         assert_eq!(network.positions(), &x0);
-        network.set_progress(1.0);
+        network.set_progress(1.0).unwrap();
         network.evaluate();
         assert_eq!(network.positions(), &x0);
     }
@@ -104,7 +104,7 @@ fn descends_towards_an_ellipsoid() {
         let mut network = Network::new(&x0, &config, 1).unwrap();
         let before = squared_distance(&x0, &target);
         for step in 0..150 {
-            network.set_progress(step as f64 / 150.0);
+            network.set_progress(step as f64 / 150.0).unwrap();
             let x = network.positions();
             let gradient = x
                 .iter()
@@ -123,7 +123,7 @@ fn the_map_moves_the_vertices_as_the_network_does() {
     let x0 = sphere();
     for config in configs() {
         let network = trained(&config, &x0);
-        let images = network.map().apply(x0.as_slice());
+        let images = network.network().unwrap().apply(x0.as_slice());
         for (image, x) in images.iter().zip(network.positions()) {
             // Blocks of another size may sum the 16 inputs of a neuron in another order.
             assert!((image - x).norm() < 1e-5);
