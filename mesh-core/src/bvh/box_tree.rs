@@ -2,32 +2,39 @@
 //!
 //! The tree works in the unit frame of its items, so that f32 resolves them wherever they lie.
 
-use glam::{Vec3A, Vec4};
-use obvhs::bvh2::reinsertion::ReinsertionOptimizer;
-use obvhs::bvh2::Bvh2;
-use obvhs::ploc::{PlocBuilder, PlocSearchDistance, SortPrecision};
+use glam::Vec4;
 
+use super::stack::{sort_down, Entry, Stack};
+use super::topology::{Topology, ABSENT, ITEM};
 use crate::{Aabb, Point3, UnitFrame, Vector3};
 
-/// Marks a child that is an item; the other bits are its slot.
-const ITEM: u32 = 1 << 31;
-/// Marks a child that is not there.
-const ABSENT: u32 = u32::MAX;
 /// Covers the rounding of a squared f32 box distance (relative; 4e-7 at most).
 const ROUNDING: f64 = 1e-6;
 /// Covers the rounding of squared f64 distances between items of the unit frame (absolute).
 const NEARNESS: f64 = 1e-20;
-/// Share of the nodes that the builder tries to place better, per round.
-const REINSERTED: f32 = 0.05;
-/// Children that a query has put off; more than this go to the heap.
-const STACK: usize = 64;
-
+/// Covers the rounding of coordinates of the unit frame, which are at most 1, to f32.
+const MARGIN: f64 = 6e-8;
 /// Four child boxes, one per lane: `min[axis][lane]`.
 #[derive(Clone, Copy, Debug)]
 struct Node {
     min: [Vec4; 3],
     max: [Vec4; 3],
     children: [u32; 4],
+}
+
+/// A box in the unit frame.
+#[derive(Clone, Copy)]
+pub(super) struct Box32 {
+    pub(super) min: [f32; 3],
+    pub(super) max: [f32; 3],
+}
+
+impl Box32 {
+    /// The box that holds nothing; finite, so that distances to it are numbers.
+    const EMPTY: Self = Self {
+        min: [f32::MAX; 3],
+        max: [f32::MIN; 3],
+    };
 }
 
 /// A tree of boxes. Items have a row (as given) and a slot (their place in the tree).
@@ -47,25 +54,22 @@ impl BoxTree {
     pub(crate) fn new(bounds: Aabb, n: usize, of_row: impl Fn(usize) -> Aabb) -> Self {
         assert!(n < ITEM as usize, "a box tree holds at most 2³¹ items");
         let frame = UnitFrame::of(bounds);
-        let (nodes, rows) = {
-            let boxes: Vec<obvhs::aabb::Aabb> =
-                (0..n).map(|row| outer_box(&frame, &of_row(row))).collect();
-            four_wide(&binary_tree(&boxes))
-        };
+        let Topology { children, rows } = Topology::new(n, |row| outer_box(&frame, &of_row(row)));
         let mut slots = vec![0; n];
         for (slot, &row) in rows.iter().enumerate() {
             slots[row as usize] = slot as u32;
         }
+        let nodes = children
+            .into_iter()
+            .map(|children| Node::new(&[Box32::EMPTY; 4], children));
         let mut tree = Self {
             frame,
-            nodes,
-            rows,
+            nodes: nodes.collect(),
+            rows: Vec::new(),
             slots,
         };
-        let rows = std::mem::take(&mut tree.rows);
         tree.refit(bounds, |slot| of_row(rows[slot] as usize));
-        tree.rows = rows;
-        tree
+        Self { rows, ..tree }
     }
 
     /// The row of each slot.
@@ -82,21 +86,18 @@ impl BoxTree {
     pub(crate) fn refit(&mut self, bounds: Aabb, of_slot: impl Fn(usize) -> Aabb) {
         self.frame = UnitFrame::of(bounds);
         for k in (0..self.nodes.len()).rev() {
-            for lane in 0..4 {
-                let (min, max) = match self.nodes[k].children[lane] {
-                    ABSENT => continue,
-                    child if child & ITEM != 0 => {
-                        let b = outer_box(&self.frame, &of_slot((child ^ ITEM) as usize));
-                        (b.min.to_array(), b.max.to_array())
+            let children = self.nodes[k].children;
+            let mut lanes = [Box32::EMPTY; 4];
+            for (lane, &child) in lanes.iter_mut().zip(&children) {
+                *lane = match child {
+                    ABSENT => Box32::EMPTY,
+                    item if item & ITEM != 0 => {
+                        outer_box(&self.frame, &of_slot((item ^ ITEM) as usize))
                     }
-                    child => self.nodes[child as usize].bounds(),
+                    inner => self.nodes[inner as usize].bounds(),
                 };
-                let node = &mut self.nodes[k];
-                for axis in 0..3 {
-                    node.min[axis][lane] = min[axis];
-                    node.max[axis][lane] = max[axis];
-                }
             }
+            self.nodes[k] = Node::new(&lanes, children);
         }
     }
 
@@ -190,17 +191,19 @@ impl BoxTree {
 }
 
 impl Node {
-    const EMPTY: Self = Self {
-        min: [Vec4::MAX; 3],
-        max: [Vec4::MIN; 3],
-        children: [ABSENT; 4],
-    };
+    fn new(lanes: &[Box32; 4], children: [u32; 4]) -> Self {
+        Self {
+            min: [0, 1, 2].map(|axis| Vec4::from_array(lanes.map(|b| b.min[axis]))),
+            max: [0, 1, 2].map(|axis| Vec4::from_array(lanes.map(|b| b.max[axis]))),
+            children,
+        }
+    }
 
-    fn bounds(&self) -> ([f32; 3], [f32; 3]) {
-        (
-            self.min.map(Vec4::min_element),
-            self.max.map(Vec4::max_element),
-        )
+    fn bounds(&self) -> Box32 {
+        Box32 {
+            min: self.min.map(Vec4::min_element),
+            max: self.max.map(Vec4::max_element),
+        }
     }
 
     /// The children with lower bounds of their squared distances, farthest first.
@@ -224,7 +227,7 @@ impl Node {
     }
 
     /// Whether the box of a child overlaps or touches `query`.
-    fn meets(&self, lane: usize, query: &obvhs::aabb::Aabb) -> bool {
+    fn meets(&self, lane: usize, query: &Box32) -> bool {
         (0..3).all(|axis| {
             self.min[axis][lane] <= query.max[axis] && query.min[axis] <= self.max[axis][lane]
         })
@@ -249,83 +252,6 @@ impl Node {
             exit = exit.min(one.max(two));
         }
         (entry * (1.0 - ROUNDING) <= exit * (1.0 + ROUNDING)).then_some(entry * (1.0 - ROUNDING))
-    }
-}
-
-/// A child and a lower bound of its squared distance, in one word that sorts by distance.
-#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-struct Entry(u64);
-
-impl Entry {
-    #[inline(always)]
-    fn new(distance: f32, child: u32) -> Self {
-        Self((u64::from(distance.to_bits()) << 32) | u64::from(child))
-    }
-
-    #[inline(always)]
-    fn distance(self) -> f32 {
-        f32::from_bits((self.0 >> 32) as u32)
-    }
-
-    #[inline(always)]
-    fn child(self) -> u32 {
-        self.0 as u32
-    }
-}
-
-#[inline(always)]
-fn sort_down([a, b, c, d]: [Entry; 4]) -> [Entry; 4] {
-    let (a, b) = (a.max(b), a.min(b));
-    let (c, d) = (c.max(d), c.min(d));
-    let (a, c) = (a.max(c), a.min(c));
-    let (b, d) = (b.max(d), b.min(d));
-    let (b, c) = (b.max(c), b.min(c));
-    [a, b, c, d]
-}
-
-/// Children put off, on the machine's stack as long as they fit.
-struct Stack {
-    entries: [Entry; STACK],
-    len: usize,
-    overflow: Vec<Entry>,
-}
-
-impl Stack {
-    #[inline(always)]
-    fn new() -> Self {
-        Self {
-            entries: [Entry(0); STACK],
-            len: 0,
-            overflow: Vec::new(),
-        }
-    }
-
-    #[inline(always)]
-    fn push(&mut self, entry: Entry) {
-        if self.len < STACK {
-            self.entries[self.len] = entry;
-            self.len += 1;
-        } else {
-            self.overflow.push(entry);
-        }
-    }
-
-    /// The last child put off that is within `reach`; those before it that are not are dropped.
-    #[inline(always)]
-    fn pop_within(&mut self, reach: f32) -> Option<u32> {
-        while let Some(entry) = self.overflow.pop() {
-            if entry.distance() <= reach {
-                return Some(entry.child());
-            }
-        }
-        while self.len > 0 {
-            self.len -= 1;
-            let entry = self.entries[self.len];
-            if entry.distance() <= reach {
-                return Some(entry.child());
-            }
-        }
-        None
     }
 }
 
@@ -373,67 +299,13 @@ fn round_up(x: f64) -> f32 {
     }
 }
 
-/// The smallest f32 box around `b` in the unit frame; bounded whatever the coordinates.
-fn outer_box(frame: &UnitFrame, b: &Aabb) -> obvhs::aabb::Aabb {
-    let [min, max] = [&b.min, &b.max].map(|p| {
-        let p = frame.to_unit(p);
-        [p.x, p.y, p.z].map(|c| bounded(c, 2.0))
-    });
-    obvhs::aabb::Aabb::new(
-        Vec3A::from_array(min.map(round_down)),
-        Vec3A::from_array(max.map(round_up)),
-    )
-}
-
-/// Source: Meister & Bittner 2018 (clustering) and 2018 (reinsertion), as in the crate `obvhs`.
-fn binary_tree(boxes: &[obvhs::aabb::Aabb]) -> Bvh2 {
-    let rows = (0..boxes.len() as u32).collect();
-    let mut tree =
-        PlocBuilder::new().build(PlocSearchDistance::Low, boxes, rows, SortPrecision::U64, 2);
-    ReinsertionOptimizer::default().run(&mut tree, REINSERTED, None);
-    tree
-}
-
-/// Pulls grandchildren up, the largest first, until nodes have four children; parents come before children.
-fn four_wide(binary: &Bvh2) -> (Vec<Node>, Vec<u32>) {
-    let mut nodes: Vec<Node> = Vec::with_capacity(binary.nodes.len() / 4);
-    let mut rows = Vec::with_capacity(binary.primitive_indices.len());
-    let mut todo = Vec::new();
-    if !binary.nodes.is_empty() {
-        todo.push((0, None));
+/// An f32 box around `b` in the unit frame, at most [`MARGIN`] larger than it must be.
+#[inline(always)]
+fn outer_box(frame: &UnitFrame, b: &Aabb) -> Box32 {
+    let to_unit = 1.0 / frame.scale;
+    let unit = |p: &Point3, axis: usize| (p[axis] - frame.center[axis]) * to_unit;
+    Box32 {
+        min: [0, 1, 2].map(|axis| (unit(&b.min, axis) - MARGIN) as f32),
+        max: [0, 1, 2].map(|axis| (unit(&b.max, axis) + MARGIN) as f32),
     }
-    while let Some((root, parent)) = todo.pop() {
-        let new = nodes.len();
-        nodes.push(Node::EMPTY);
-        if let Some((node, lane)) = parent {
-            let node: &mut Node = &mut nodes[node];
-            node.children[lane] = new as u32;
-        }
-        for (lane, child) in descendants(binary, root).into_iter().enumerate() {
-            let node = &binary.nodes[child];
-            if node.is_leaf() {
-                nodes[new].children[lane] = ITEM | rows.len() as u32;
-                rows.push(binary.primitive_indices[node.first_index as usize]);
-            } else {
-                todo.push((child, Some((new, lane))));
-            }
-        }
-    }
-    (nodes, rows)
-}
-
-/// Up to four descendants of `root` that cover it.
-fn descendants(binary: &Bvh2, root: usize) -> Vec<usize> {
-    let mut found = vec![root];
-    while found.len() < 4 {
-        let area = |&k: &usize| binary.nodes[found[k]].aabb().half_area();
-        let inner = (0..found.len()).filter(|&k| !binary.nodes[found[k]].is_leaf());
-        let Some(largest) = inner.max_by(|a, b| area(a).total_cmp(&area(b))) else {
-            break;
-        };
-        let left = binary.nodes[found[largest]].first_index as usize;
-        found[largest] = left;
-        found.insert(largest + 1, left + 1);
-    }
-    found
 }

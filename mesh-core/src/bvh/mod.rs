@@ -2,6 +2,8 @@
 
 mod box_tree;
 mod ray;
+mod stack;
+mod topology;
 mod triangle;
 
 pub(crate) use box_tree::BoxTree;
@@ -42,8 +44,8 @@ struct Best {
 impl TriangleBvh {
     /// The hierarchy of the triangles with these corners; there may be none.
     pub fn new(corners: Vec<[Point3; 3]>) -> Self {
-        let bounds = Aabb::of(corners.iter().flatten());
-        let tree = BoxTree::new(bounds, corners.len(), |row| Aabb::of(&corners[row]));
+        let bounds = corners.iter().map(triangle_box).fold(Aabb::EMPTY, union);
+        let tree = BoxTree::new(bounds, corners.len(), |row| triangle_box(&corners[row]));
         let corners = tree
             .rows()
             .iter()
@@ -83,23 +85,22 @@ impl TriangleBvh {
     /// # Panics
     /// If there are not as many triangles as before.
     pub fn refit(&mut self, corners: impl IntoIterator<Item = [Point3; 3]>) {
-        let mut n = 0;
+        let (mut n, mut bounds) = (0, Aabb::EMPTY);
         for (row, triangle) in corners.into_iter().enumerate() {
             assert!(
                 row < self.len(),
                 "refit with more than {} triangles",
                 self.len()
             );
-            let slot = self.tree.slot(row as u32) as usize;
-            self.corners[slot] = triangle;
+            self.corners[self.tree.slot(row as u32) as usize] = triangle;
+            bounds = union(bounds, triangle_box(&triangle));
             n += 1;
         }
         assert_eq!(n, self.len(), "refit with fewer triangles than before");
 
-        self.bounds = Aabb::of(self.corners.iter().flatten());
+        self.bounds = bounds;
         let corners = &self.corners;
-        self.tree
-            .refit(self.bounds, |slot| Aabb::of(&corners[slot]));
+        self.tree.refit(bounds, |slot| triangle_box(&corners[slot]));
     }
 
     /// The closest point over all triangles; none if there is no triangle.
@@ -196,5 +197,33 @@ impl TriangleBvh {
             first.as_ref().map_or(f64::INFINITY, |f| f.distance)
         });
         first
+    }
+}
+
+#[inline(always)]
+fn triangle_box([a, b, c]: &[Point3; 3]) -> Aabb {
+    let box_of = |p: &Point3| Aabb { min: *p, max: *p };
+    union(union(box_of(a), box_of(b)), box_of(c))
+}
+
+#[inline(always)]
+fn union(a: Aabb, b: Aabb) -> Aabb {
+    let low = |axis: usize| {
+        if b.min[axis] < a.min[axis] {
+            b.min[axis]
+        } else {
+            a.min[axis]
+        }
+    };
+    let high = |axis: usize| {
+        if b.max[axis] > a.max[axis] {
+            b.max[axis]
+        } else {
+            a.max[axis]
+        }
+    };
+    Aabb {
+        min: Point3::new(low(0), low(1), low(2)),
+        max: Point3::new(high(0), high(1), high(2)),
     }
 }
