@@ -1,1 +1,42 @@
 //! Landmark-guided initial deformation of polygon meshes: affine, biharmonic, as rigid as possible.
+//!
+//! | to | call |
+//! |---|---|
+//! | get the shape that draping starts at | [`initialize`] |
+//! | fit as much of an affine map as landmarks determine | [`fit_affine`] |
+//! | find landmarks that disagree with the others | [`leave_one_out_residuals`] |
+//! | spread displacements smoothly | [`biharmonic_displacement`] |
+//! | spread rotations and scales smoothly | [`SimilarSolver`] |
+//! | deform as rigidly as possible | [`ArapSolver`] |
+//!
+//! ```
+//! use mesh_core::{shapes, Aabb, Landmark, Point3, VertexId};
+//! use mesh_init::{initialize, InitConfig, InitInput};
+//! let (mesh, rest) = shapes::quad_sphere(8).into_halfedge()?;
+//! let stretched = rest.map(|p| Point3::new(3.0 * p.x, p.y, p.z));
+//! let landmarks = [0, 8, 40, 100, 200].map(|v| Landmark::new(VertexId::new(v), stretched[VertexId::new(v)]));
+//! let input = InitInput { mesh: &mesh, rest: &rest, landmarks: &landmarks, target_bounds: Aabb::of(stretched.iter()) };
+//! let initial = initialize(input, &InitConfig::paper())?;
+//! assert!(initial.positions.iter().zip(&stretched).all(|(p, q)| (p - q).norm() < 1e-6));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod affine;
+mod arap;
+mod biharmonic;
+mod cells;
+mod error;
+mod initialize;
+mod reach;
+mod rotation;
+mod similar;
+
+pub use affine::{
+    fit_affine, leave_one_out_residuals, AffineFit, AffineKind, BoundsPair, PointPair,
+    SimilarityPrior,
+};
+pub use arap::{ArapScratch, ArapSolver};
+pub use biharmonic::biharmonic_displacement;
+pub use error::InitError;
+pub use initialize::{initialize, point_pairs, InitConfig, InitInput, Initial, Pinning, Spread};
+pub use similar::{SimilarConfig, SimilarSolver};

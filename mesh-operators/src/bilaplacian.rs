@@ -1,19 +1,19 @@
-//! The operator whose minimisers bend as little as they can.
+//! The operator whose minimisers bend as little as they can, and products with it.
 
-use mesh_core::VertexData;
+use mesh_core::{Vector3, VertexData};
 use nalgebra_sparse::CsrMatrix;
 
 /// A vertex counts as at least this share of the mean mass, so that `M⁻¹` exists.
 const MIN_MASS: f64 = 1e-6;
 
-/// Bi-Laplacian, integrated: `L M⁻¹ L`.
+/// Laplacian per unit of area: `M⁻¹ L`.
 ///
-/// `l`: N × N, symmetric; `mass`: N. Positive semi-definite. Degenerate input: a mass below 1e-6 of the mean counts
-/// as that much (as 1 where all are 0). Source: Jacobson et al. 2010, mixed finite elements, lumped mass.
+/// `l`: N × N; `mass`: N. Row `i` of its product with positions is twice the mean curvature normal at vertex `i`.
+/// Degenerate input: a mass below 1e-6 of the mean counts as that much (as 1 where all are 0).
 ///
 /// # Panics
 /// If `l` is not N × N.
-pub fn bilaplacian(l: &CsrMatrix<f64>, mass: &VertexData<f64>) -> CsrMatrix<f64> {
+pub fn pointwise_laplacian(l: &CsrMatrix<f64>, mass: &VertexData<f64>) -> CsrMatrix<f64> {
     assert!(
         l.nrows() == mass.len() && l.ncols() == mass.len(),
         "one mass per row of the Laplacian"
@@ -21,11 +21,35 @@ pub fn bilaplacian(l: &CsrMatrix<f64>, mass: &VertexData<f64>) -> CsrMatrix<f64>
     let mean = mass.iter().sum::<f64>() / mass.len().max(1) as f64;
     let floor = if mean > 0.0 { MIN_MASS * mean } else { 1.0 };
 
-    let mut inverse_mass_l = l.clone();
-    for (mut row, &m) in inverse_mass_l.row_iter_mut().zip(mass) {
+    let mut pointwise = l.clone();
+    for (mut row, &m) in pointwise.row_iter_mut().zip(mass) {
         row.values_mut()
             .iter_mut()
             .for_each(|value| *value /= m.max(floor));
     }
-    l * &inverse_mass_l
+    pointwise
+}
+
+/// Bi-Laplacian, integrated: `L M⁻¹ L`.
+///
+/// `l`: N × N, symmetric; `mass`: N. Positive semi-definite. Degenerate input: as [`pointwise_laplacian`].
+/// Source: Jacobson et al. 2010, mixed finite elements, lumped mass.
+///
+/// # Panics
+/// If `l` is not N × N.
+pub fn bilaplacian(l: &CsrMatrix<f64>, mass: &VertexData<f64>) -> CsrMatrix<f64> {
+    l * &pointwise_laplacian(l, mass)
+}
+
+/// `a · x`, one vector for each row of `a`.
+///
+/// # Panics
+/// If `x` has not one vector for each column of `a`.
+pub fn multiply(a: &CsrMatrix<f64>, x: &[Vector3]) -> Vec<Vector3> {
+    assert_eq!(a.ncols(), x.len(), "one vector for each column");
+    let product = |row: nalgebra_sparse::csr::CsrRow<'_, f64>| {
+        let terms = row.col_indices().iter().zip(row.values());
+        terms.fold(Vector3::zeros(), |sum, (&j, &value)| sum + x[j] * value)
+    };
+    a.row_iter().map(product).collect()
 }

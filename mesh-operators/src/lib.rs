@@ -2,7 +2,7 @@
 //!
 //! | to | call |
 //! |---|---|
-//! | measure bending of a surface | [`cotan_laplacian`], [`bilaplacian`] |
+//! | measure bending of a surface | [`cotan_laplacian`], [`pointwise_laplacian`], [`bilaplacian`] |
 //! | smooth over edges whatever the shape | [`uniform_laplacian`] |
 //! | give each vertex its share of the area | [`voronoi_mass`], [`barycentric_mass`] |
 //! | solve `A x = b` for a positive definite `A` | [`SpdSolver`] |
@@ -23,7 +23,7 @@ mod space_extension;
 mod spd_solver;
 mod uniform_laplacian;
 
-pub use bilaplacian::bilaplacian;
+pub use bilaplacian::{bilaplacian, multiply, pointwise_laplacian};
 pub use cotan_laplacian::{cotan_laplacian, cotan_weights, CotanWeight};
 pub use error::SolveError;
 pub use fixed_solve::{FixedSolve, FixedSolveScratch};

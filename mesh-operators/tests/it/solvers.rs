@@ -1,23 +1,11 @@
 use mesh_core::{shapes, Vector3, VertexId};
 use mesh_operators::{
-    bilaplacian, cotan_laplacian, uniform_laplacian, voronoi_mass, CsrMatrix, FixedSolve,
+    bilaplacian, cotan_laplacian, multiply, uniform_laplacian, voronoi_mass, CsrMatrix, FixedSolve,
     FixedSolveScratch, SolveError, SpdSolver,
 };
 use proptest::prelude::*;
 
 use crate::shapes as all_shapes;
-
-fn multiply(a: &CsrMatrix<f64>, x: &[Vector3]) -> Vec<Vector3> {
-    let row = |i: usize| {
-        let row = a.row(i);
-        row.col_indices()
-            .iter()
-            .zip(row.values())
-            .map(|(&j, &w)| x[j] * w)
-            .sum()
-    };
-    (0..a.nrows()).map(row).collect()
-}
 
 /// `I + 5 L`, the smoothing operator that draping solves with.
 fn smoothing(s: &all_shapes::Shape) -> CsrMatrix<f64> {

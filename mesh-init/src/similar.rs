@@ -1,0 +1,189 @@
+//! Deformation as similar as possible: rotations and scales spread smoothly from the landmarks.
+
+use mesh_core::{Aabb, Point3, Positions, Triangulation, Vector3, VertexData, VertexId};
+use mesh_operators::{
+    cotan_laplacian, multiply, pointwise_laplacian, voronoi_mass, CsrMatrix, FixedSolve,
+    FixedSolveScratch, SolveError, SpdSolver,
+};
+use nalgebra::Matrix3;
+use nalgebra_sparse::CooMatrix;
+
+use crate::cells::Cells;
+use crate::reach::held_and_unreached;
+use crate::rotation::nearest_rotation;
+
+/// A neighbourhood grows or shrinks at most this much.
+const MAX_SCALE: f64 = 3.0;
+/// A neighbourhood is at least this many mean sides wide, so that its frame is determined.
+const MIN_RADIUS_IN_SIDES: f64 = 1.0;
+
+/// How far rotations spread and how closely landmarks are met. Lengths are shares of the longest side of the box.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SimilarConfig {
+    /// Width of the neighbourhoods that turn and scale as one, > 0.
+    pub frame_radius: f64,
+    /// Length below which the surface resists bending more than stretching, ≥ 0.
+    pub bending_length: f64,
+    /// Pull of a landmark, > 0; 1 is about as strong as the surface's own.
+    pub landmark_weight: f64,
+    /// Steps at most, ≥ 1.
+    pub max_steps: usize,
+    /// The solve ends when no vertex moves farther than this share of the longest side in a step, ≥ 0.
+    pub min_motion: f64,
+}
+
+impl SimilarConfig {
+    /// Chosen on the pairs of bodies, faces and animals together, for least distortion without folds.
+    pub fn standard() -> Self {
+        Self {
+            frame_radius: 0.1,
+            bending_length: 0.03,
+            landmark_weight: 30.0,
+            max_steps: 40,
+            min_motion: 1e-4,
+        }
+    }
+}
+
+/// Deformation in which every neighbourhood turns and scales as one, drawn towards landmarks.
+///
+/// Alternates between the frames `F_i = s_i R_i` that carry the surroundings of each vertex, and
+/// `(L + b² L M⁻¹ L + W) x = (I + b² L M⁻¹) δ(F) + W u`, where `δ(F)` is the Laplacian of the rest shape carried by the
+/// frames, `b` the bending length and `W` the landmark weights. With `F = I` and large `b` that is the biharmonic
+/// displacement; unlike it, a limb that turns keeps its shape.
+///
+/// The frames come from the covariances of the cells, smoothed over the frame radius `r` by `(M + r² L)⁻¹`, so that
+/// small features ride along instead of folding. Pieces without a landmark stay where the guess has them.
+/// After Au et al. 2006 (rotated Laplacian coordinates) and Levi and Gotsman 2015 (smooth rotations).
+#[derive(Clone, Debug)]
+pub struct SimilarSolver {
+    config: SimilarConfig,
+    size: f64,
+    cells: Cells,
+    smoother: SpdSolver,
+    rest_squares: Vec<f64>,
+    bending: CsrMatrix<f64>,
+    landmarks: Vec<VertexId>,
+    solve: FixedSolve,
+}
+
+impl SimilarSolver {
+    /// Factors the systems for a rest shape and the vertices that landmarks will pull.
+    ///
+    /// # Errors
+    /// The rest shape is so degenerate that its surface does not determine a deformation.
+    pub fn new(
+        triangulation: &Triangulation,
+        rest: &Positions,
+        landmarks: &[VertexId],
+        config: SimilarConfig,
+    ) -> Result<Self, SolveError> {
+        let n = rest.len();
+        let size = Aabb::of(rest.iter()).longest_side();
+        let laplacian = cotan_laplacian(triangulation, rest);
+        let mass = voronoi_mass(triangulation, rest);
+        let cells = Cells::new(triangulation, rest);
+
+        let radius =
+            (config.frame_radius * size).max(MIN_RADIUS_IN_SIDES * mean_side(triangulation, rest));
+        let mean_mass = mass.iter().sum::<f64>() / n.max(1) as f64;
+        let masses = mass
+            .iter()
+            .map(|m| m.max(1e-6 * mean_mass).max(f64::MIN_POSITIVE));
+        let smoother = SpdSolver::new(&(diagonal(masses) + &laplacian * radius.powi(2)))?;
+        let mut rest_squares = cells.rest_squares(n).into_vec();
+        smoother.solve_in_place(&mut rest_squares, &mut Vec::new());
+
+        let bending = pointwise_laplacian(&laplacian, &mass).transpose()
+            * (config.bending_length * size).powi(2);
+        let mut pull = vec![0.0; n];
+        for v in landmarks {
+            pull[v.index()] = config.landmark_weight;
+        }
+        let system = &laplacian + &(&bending * &laplacian) + diagonal(pull.into_iter());
+        let is_landmark = |v: &VertexId| landmarks.contains(v);
+        let stay = held_and_unreached(triangulation, n, landmarks);
+        let stay: Vec<VertexId> = stay.into_iter().filter(|v| !is_landmark(v)).collect();
+        Ok(Self {
+            solve: FixedSolve::new(&system, &stay)?,
+            landmarks: landmarks.to_vec(),
+            config,
+            size,
+            cells,
+            smoother,
+            rest_squares,
+            bending,
+        })
+    }
+
+    /// The deformed positions, with `targets[k]` the place of the k-th landmark, starting at `guess`.
+    ///
+    /// # Panics
+    /// If there is not one target for each landmark, or not one position for each vertex.
+    pub fn solve(&self, targets: &[Point3], guess: &Positions) -> Positions {
+        assert_eq!(
+            targets.len(),
+            self.landmarks.len(),
+            "one target for each landmark"
+        );
+        let mut x = guess.clone();
+        let mut scratch = FixedSolveScratch::default();
+        for _ in 0..self.config.max_steps {
+            let delta = self.cells.carried_laplacian(&self.frames(&x));
+            let mut right = multiply(&self.bending, &delta);
+            for (r, d) in right.iter_mut().zip(&delta) {
+                *r += d;
+            }
+            for (v, target) in self.landmarks.iter().zip(targets) {
+                right[v.index()] += target.coords * self.config.landmark_weight;
+            }
+
+            let mut next: Vec<Vector3> = x.iter().map(|p| p.coords).collect();
+            self.solve
+                .solve_with_in_place(&mut next, &right, &mut scratch);
+            let moved = x
+                .iter()
+                .zip(&next)
+                .map(|(p, q)| (p.coords - q).norm())
+                .fold(0.0, f64::max);
+            x = next.into_iter().map(Point3::from).collect();
+            if moved <= self.config.min_motion * self.size {
+                break;
+            }
+        }
+        x
+    }
+
+    /// Rotation times scale of the neighbourhood of each vertex.
+    fn frames(&self, x: &Positions) -> VertexData<Matrix3<f64>> {
+        let mut covariances = self.cells.covariances(x).into_vec();
+        self.smoother
+            .solve_in_place(&mut covariances, &mut Vec::new());
+        let frame = |(s, &squares): (&Matrix3<f64>, &f64)| {
+            let rotation = nearest_rotation(s);
+            let scale = (rotation.transpose() * s).trace() / squares;
+            let bounded = scale.clamp(1.0 / MAX_SCALE, MAX_SCALE);
+            rotation * if bounded.is_finite() { bounded } else { 1.0 }
+        };
+        covariances
+            .iter()
+            .zip(&self.rest_squares)
+            .map(frame)
+            .collect()
+    }
+}
+
+fn mean_side(triangulation: &Triangulation, x: &Positions) -> f64 {
+    let sides = triangulation
+        .corners(x)
+        .map(|[a, b, c]| (b - a).norm() + (c - b).norm() + (a - c).norm());
+    sides.sum::<f64>() / (3 * triangulation.len()).max(1) as f64
+}
+
+fn diagonal(values: impl Iterator<Item = f64>) -> CsrMatrix<f64> {
+    let values: Vec<f64> = values.collect();
+    let rows: Vec<usize> = (0..values.len()).collect();
+    let matrix =
+        CooMatrix::try_from_triplets(values.len(), values.len(), rows.clone(), rows, values);
+    CsrMatrix::from(&matrix.expect("the diagonal lies in the matrix"))
+}
