@@ -6,6 +6,7 @@ use mesh_metrics::{evaluate, EvaluationConfig, EvaluationInput};
 
 fn evaluate_a_sphere(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("evaluate");
+    group.sample_size(10);
     for n in [13, 41, 129] {
         let (mesh, rest) = shapes::quad_sphere(n)
             .into_halfedge()
