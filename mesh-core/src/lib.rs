@@ -5,6 +5,7 @@
 //! |---|---|
 //! | read a mesh, write it back with new positions | [`io`] |
 //! | get connectivity | [`PolygonSoup::into_halfedge`] |
+//! | let equal positions move as one | [`PolygonSoup::weld`] |
 //! | measure polygons as triangles | [`Triangulation::new`] |
 //! | query a target | [`TriangleSoup::new`], [`PointCloud::new`], [`TargetSurface`] |
 //! | query a moving mesh | [`TriangleBvh`] |
@@ -24,6 +25,7 @@ pub mod shapes;
 mod soup;
 pub mod surface;
 mod triangulation;
+mod weld;
 
 pub use attribute::{Attribute, EdgeData, FaceData, HalfedgeData, Positions, VertexData};
 pub use bvh::TriangleBvh;
@@ -37,6 +39,7 @@ pub use surface::{
     Location, NormalSign, PointCloud, SurfacePoint, SurfaceSample, TargetSurface, TriangleSoup,
 };
 pub use triangulation::{Triangulation, TriangulationEdge};
+pub use weld::Weld;
 
 /// A point of space, in the units of its file.
 pub type Point3 = nalgebra::Point3<f64>;

@@ -61,11 +61,14 @@ pub enum ReadProblem {
     /// The operating system refused.
     #[error("cannot be read")]
     Io(#[source] io::Error),
+    /// Not a whole gzip file.
+    #[error("cannot be unpacked; is the file complete")]
+    Packed(#[source] io::Error),
     /// There is not one byte.
     #[error("the file is empty")]
     Empty,
     /// Neither content nor extension tells the format.
-    #[error("not a mesh format known here; give an OBJ, OFF or PLY file with its usual extension")]
+    #[error("not a mesh format known here; give an OBJ, PLY, STL, OFF, glTF, GLB or XYZ file with its usual extension")]
     UnknownFormat,
     /// Binary data where text was expected.
     #[error("binary data in what should be text; is this really an {format} file")]
@@ -155,13 +158,23 @@ pub enum WriteError {
         #[source]
         source: io::Error,
     },
-    /// The extension names no format that can be written.
-    #[error("{}: no format with this extension can be written; use one of {known}", path.display())]
+    /// The extension names no format that this can be written in.
+    #[error("{}: cannot be written in the format of this extension; use one of {known}", path.display())]
     UnknownFormat {
         /// The file.
         path: PathBuf,
         /// The extensions that can.
         known: &'static str,
+    },
+    /// The source holds something that cannot take new positions.
+    #[error("{}: {feature} cannot take new positions; {advice}", path.display())]
+    Unsupported {
+        /// The source file.
+        path: PathBuf,
+        /// What it holds.
+        feature: String,
+        /// What to do about it.
+        advice: &'static str,
     },
     /// Not one position per vertex of the file.
     #[error("{}: {found} positions for the {expected} vertices of the source", path.display())]

@@ -6,8 +6,8 @@ use std::path::{Path, PathBuf};
 use super::contents::{Contents, Parsed};
 use super::error::{Fault, ReadError, ReadProblem, WriteError};
 use super::format::Format;
-use super::save::{check_finite, encode, write_atomic};
-use super::{obj, off, ply};
+use super::save::{check_encodes, check_finite, encode, packed_as_named, write_atomic};
+use super::{gzip, obj, off, ply, stl, xyz};
 use crate::{Point3, PolygonSoup, Positions, Vector3};
 
 /// A mesh file in memory, with everything needed to write it back with new positions.
@@ -84,6 +84,10 @@ impl MeshFile {
     /// As [`read_mesh`].
     pub fn from_bytes(path: impl AsRef<Path>, bytes: Vec<u8>) -> Result<Self, ReadError> {
         let path = path.as_ref();
+        let bytes = match gzip::is_packed(&bytes) {
+            true => gzip::unpack(&bytes).map_err(|fault| fault.of(path))?,
+            false => bytes,
+        };
         let (format, parsed) = parse(&bytes, path).map_err(|fault| fault.of(path))?;
         Ok(Self {
             path: path.to_owned(),
@@ -125,6 +129,8 @@ impl MeshFile {
             Format::Obj => obj::vertex_normals(&self.bytes, &self.soup),
             Format::Off => off::vertex_normals(&self.bytes, &self.contents),
             Format::Ply => ply::vertex_normals(&self.bytes, &self.contents),
+            Format::Xyz => xyz::vertex_normals(&self.bytes),
+            Format::Stl => None,
         }?;
         for n in &mut normals {
             *n = n.try_normalize(f64::MIN_POSITIVE).unwrap_or_default();
@@ -138,16 +144,28 @@ impl MeshFile {
     /// names another format, points and faces are converted ([`Self::lost_in`] tells what is not).
     ///
     /// # Errors
-    /// Not one finite position per vertex, or a file that cannot be written.
+    /// Not one finite position per vertex, an extension whose format is not written, or a file that cannot be written.
     pub fn write(&self, path: impl AsRef<Path>, x: &Positions) -> Result<(), WriteError> {
         let path = path.as_ref();
         write_atomic(path, &self.to_bytes(path, x)?)
     }
 
+    /// Whether this file can be written to `path` in the format of its extension: to know before a long run.
+    ///
+    /// # Errors
+    /// What [`Self::write`] would say whatever the positions.
+    pub fn check_writable(&self, path: impl AsRef<Path>) -> Result<(), WriteError> {
+        let path = path.as_ref();
+        match self.output_format(path) {
+            format if format == self.format => Ok(()),
+            format => check_encodes(path, format),
+        }
+    }
+
     /// What [`Self::write`] would write to `path`.
     ///
     /// # Errors
-    /// Not one finite position per vertex.
+    /// As [`Self::write`], but for those of the file system.
     pub fn to_bytes(&self, path: impl AsRef<Path>, x: &Positions) -> Result<Vec<u8>, WriteError> {
         let path = path.as_ref();
         let (expected, found) = (self.soup.positions.len(), x.len());
@@ -161,17 +179,18 @@ impl MeshFile {
         }
         check_finite(path, x.as_slice())?;
 
-        let format = self.output_format(path);
-        if format == self.format {
-            return self.rewrite(x.as_slice());
-        }
-        Ok(encode(
-            format,
-            &PolygonSoup {
-                positions: x.as_slice().to_vec(),
-                faces: self.soup.faces.clone(),
-            },
-        ))
+        let bytes = match self.output_format(path) {
+            format if format == self.format => self.rewrite(x.as_slice())?,
+            format => encode(
+                path,
+                format,
+                &PolygonSoup {
+                    positions: x.as_slice().to_vec(),
+                    faces: self.soup.faces.clone(),
+                },
+            )?,
+        };
+        Ok(packed_as_named(path, bytes))
     }
 
     /// The format in which this file would be written to `path`: the source's unless the extension names another.
@@ -185,6 +204,8 @@ impl MeshFile {
             Format::Obj => Ok(obj::rewrite(bytes, contents, rest, moved)),
             Format::Off => off::rewrite(bytes, contents, rest, moved),
             Format::Ply => ply::rewrite(bytes, contents, rest, moved),
+            Format::Stl => stl::rewrite(bytes, rest, moved),
+            Format::Xyz => xyz::rewrite(bytes, rest, moved),
         };
         Ok(rewritten.map_err(|fault| fault.of(&self.path))?)
     }
@@ -229,14 +250,15 @@ fn parse(bytes: &[u8], path: &Path) -> Result<(Format, Parsed), Fault> {
     let format =
         Format::detect(bytes, path).ok_or_else(|| Fault::whole(ReadProblem::UnknownFormat))?;
     let name = format.name();
-    let is_text = matches!(format, Format::Obj | Format::Off);
-    if is_text && bytes.contains(&0) {
+    if format.is_text() && bytes.contains(&0) {
         return Err(Fault::whole(ReadProblem::Binary { format: name }));
     }
     let parsed = match format {
         Format::Obj => obj::read(bytes),
         Format::Off => off::read(bytes),
         Format::Ply => ply::read(bytes),
+        Format::Stl => stl::read(bytes),
+        Format::Xyz => xyz::read(bytes),
     }?;
     if parsed.soup.positions.is_empty() {
         return Err(Fault::whole(ReadProblem::NoVertices { format: name }));

@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use super::off;
 use super::text::{number, Cursor};
+use super::{gzip, off, stl, xyz};
 
 /// A mesh format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -15,6 +15,10 @@ pub enum Format {
     Off,
     /// PLY, in any encoding.
     Ply,
+    /// STL, text or binary.
+    Stl,
+    /// A list of points, one a line.
+    Xyz,
 }
 
 impl Format {
@@ -24,16 +28,22 @@ impl Format {
             Self::Obj => "OBJ",
             Self::Off => "OFF",
             Self::Ply => "PLY",
+            Self::Stl => "STL",
+            Self::Xyz => "XYZ",
         }
     }
 
-    /// The format that the extension of `path` names.
+    /// The format that the extension of `path` names, a final `.gz` aside.
     pub fn of_extension(path: &Path) -> Option<Self> {
+        let inner = gzip::inner_path(path);
+        let path = inner.as_deref().unwrap_or(path);
         let extension = path.extension()?.to_str()?.to_ascii_lowercase();
         Some(match extension.as_str() {
             "obj" => Self::Obj,
             "off" | "coff" | "noff" | "cnoff" | "stoff" => Self::Off,
             "ply" => Self::Ply,
+            "stl" => Self::Stl,
+            "xyz" | "xyzn" | "pts" | "asc" | "csv" | "txt" => Self::Xyz,
             _ => return None,
         })
     }
@@ -49,6 +59,9 @@ impl Format {
         if bytes.starts_with(b"ply") && matches!(bytes.get(3), Some(b'\n' | b'\r')) {
             return Some(Self::Ply);
         }
+        if stl::is_binary(bytes) || stl::is_text(bytes) {
+            return Some(Self::Stl);
+        }
         let first = Cursor::new(bytes).word()?;
         off::keyword_prefix(first.text).map(|_| Self::Off)
     }
@@ -62,7 +75,12 @@ impl Format {
         match keyword {
             b"v" if is_vertex(cursor) => Some(Self::Obj),
             b"mtllib" | b"usemtl" | b"o" | b"g" | b"s" | b"vn" | b"vt" => Some(Self::Obj),
-            _ => None,
+            _ => xyz::is_points(bytes).then_some(Self::Xyz),
         }
+    }
+
+    /// Whether files of this format are text throughout.
+    pub(super) const fn is_text(self) -> bool {
+        matches!(self, Self::Obj | Self::Off | Self::Xyz)
     }
 }

@@ -17,11 +17,14 @@ mod contents;
 mod error;
 mod file;
 mod format;
+mod gzip;
 mod obj;
 mod off;
 mod ply;
 mod save;
+mod stl;
 mod text;
+mod xyz;
 
 pub use contents::{Contents, NamedFaces};
 pub use error::{Place, ReadError, ReadProblem, WriteError};

@@ -7,10 +7,10 @@ use std::sync::atomic::{AtomicU32, Ordering};
 
 use super::error::WriteError;
 use super::format::Format;
-use super::{obj, off, ply};
+use super::{gzip, obj, off, ply};
 use crate::PolygonSoup;
 
-const WRITABLE: &str = ".obj, .off or .ply";
+const WRITABLE: &str = ".obj, .off or .ply, each perhaps with .gz";
 
 /// Writes a new file of `soup`, in the format that the extension of `path` names.
 ///
@@ -27,20 +27,46 @@ const WRITABLE: &str = ".obj, .off or .ply";
 /// An unknown extension, a coordinate that is not finite, or a file that cannot be written.
 pub fn write_soup(path: impl AsRef<Path>, soup: &PolygonSoup) -> Result<(), WriteError> {
     let path = path.as_ref();
-    let format = Format::of_extension(path).ok_or_else(|| WriteError::UnknownFormat {
-        path: path.to_owned(),
-        known: WRITABLE,
-    })?;
+    let format = Format::of_extension(path).ok_or_else(|| unknown_format(path))?;
     check_finite(path, &soup.positions)?;
-    write_atomic(path, &encode(format, soup))
+    let bytes = encode(path, format, soup)?;
+    write_atomic(path, &packed_as_named(path, bytes))
 }
 
-/// A new file of `soup`.
-pub(super) fn encode(format: Format, soup: &PolygonSoup) -> Vec<u8> {
-    match format {
-        Format::Obj => obj::write(soup),
+/// A new file of `soup`, to be called `path`.
+pub(super) fn encode(
+    path: &Path,
+    format: Format,
+    soup: &PolygonSoup,
+) -> Result<Vec<u8>, WriteError> {
+    check_encodes(path, format)?;
+    Ok(match format {
         Format::Off => off::write(soup),
         Format::Ply => ply::write(soup),
+        _ => obj::write(soup),
+    })
+}
+
+/// Whether new files of a format are written.
+pub(super) fn check_encodes(path: &Path, format: Format) -> Result<(), WriteError> {
+    match format {
+        Format::Obj | Format::Off | Format::Ply => Ok(()),
+        _ => Err(unknown_format(path)),
+    }
+}
+
+fn unknown_format(path: &Path) -> WriteError {
+    WriteError::UnknownFormat {
+        path: path.to_owned(),
+        known: WRITABLE,
+    }
+}
+
+/// `bytes`, packed if `path` ends in `.gz`.
+pub(super) fn packed_as_named(path: &Path, bytes: Vec<u8>) -> Vec<u8> {
+    match gzip::inner_path(path) {
+        Some(_) => gzip::pack(&bytes),
+        None => bytes,
     }
 }
 

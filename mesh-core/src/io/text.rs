@@ -61,9 +61,11 @@ impl<'a> Cursor<'a> {
             None | Some(b'\n' | b'\r' | b'#') => return None,
             Some(_) => {}
         }
-        while let Some(byte) = self.peek() {
-            if is_blank(byte) || is_newline(byte) || byte == b'\\' && self.continuation().is_some()
-            {
+        loop {
+            let rest = &self.bytes[self.at..];
+            let length = rest.iter().position(|&b| MAY_END_A_FIELD[usize::from(b)]);
+            self.at += length.unwrap_or(rest.len());
+            if self.peek() != Some(b'\\') || self.continuation().is_some() {
                 break;
             }
             self.at += 1;
@@ -177,11 +179,22 @@ impl<'a> Cursor<'a> {
     }
 }
 
-fn is_blank(byte: u8) -> bool {
+/// Blanks, line ends, and the backslash that may stand before one.
+const MAY_END_A_FIELD: [bool; 256] = {
+    let mut table = [false; 256];
+    let mut byte = 0;
+    while byte < table.len() {
+        table[byte] = is_blank(byte as u8) || is_newline(byte as u8) || byte as u8 == b'\\';
+        byte += 1;
+    }
+    table
+};
+
+const fn is_blank(byte: u8) -> bool {
     matches!(byte, b' ' | b'\t' | 0x0B | 0x0C)
 }
 
-fn is_newline(byte: u8) -> bool {
+const fn is_newline(byte: u8) -> bool {
     matches!(byte, b'\n' | b'\r')
 }
 

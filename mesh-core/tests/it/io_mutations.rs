@@ -81,7 +81,8 @@ fn survive(name: &str, bytes: Vec<u8>) -> Result<(), TestCaseError> {
     let unchanged = file.to_bytes(name, &x);
     prop_assert_eq!(unchanged.ok(), Some(bytes));
 
-    let moved = x.map(|p| p.map(|c| if c == 1.5 { 2.5 } else { 1.5 }));
+    let n = x.len();
+    let moved: Positions = (0..n).map(|row| [1.5, -0.25, row as f64 + 0.5].into()).collect();
     let bytes = file
         .to_bytes(name, &moved)
         .map_err(|e| TestCaseError::fail(e.to_string()))?;
@@ -100,6 +101,18 @@ const PLY: &str = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\npr
                    property float nx\nproperty float ny\nproperty float nz\nelement face 1\n\
                    property list uchar int vertex_indices\nend_header\n0 0 0 0 0 1\n1 0 0 0 0 1\n0 1 0 0 0 1\n3 0 1 2\n";
 
+const STL: &str = "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n\
+                   endsolid a\n";
+const XYZ: &str = "x,y,z,nx,ny,nz\n0,0,0,0,0,1\n1,0,0,0,0,1\n";
+
+fn binary_stl() -> Vec<u8> {
+    let mut bytes = vec![0; 84 + 2 * 50];
+    bytes[80] = 2;
+    bytes[84 + 24..84 + 28].copy_from_slice(&1f32.to_le_bytes());
+    bytes[84 + 66..84 + 70].copy_from_slice(&1f32.to_le_bytes());
+    bytes
+}
+
 /// Whole files to damage.
 static SEEDS: LazyLock<Vec<(&str, Vec<u8>)>> = LazyLock::new(|| {
     let faces = MeshFile::from_bytes("a.obj", OBJ.into()).unwrap();
@@ -108,6 +121,9 @@ static SEEDS: LazyLock<Vec<(&str, Vec<u8>)>> = LazyLock::new(|| {
         ("a.obj", OBJ.into()),
         ("a.off", OFF.into()),
         ("a.ply", PLY.into()),
+        ("a.stl", STL.into()),
+        ("a.stl", binary_stl()),
+        ("a.xyz", XYZ.into()),
         ("a.ply", faces.to_bytes("a.ply", &x).unwrap()),
     ]
 });
@@ -125,7 +141,7 @@ proptest! {
     }
 
     #[test]
-    fn junk(bytes in prop::collection::vec(any::<u8>(), 0..200), name in prop::sample::select(vec!["a.obj", "a.off", "a.ply", "a"])) {
+    fn junk(bytes in prop::collection::vec(any::<u8>(), 0..200), name in prop::sample::select(vec!["a.obj", "a.off", "a.ply", "a.stl", "a.xyz", "a"])) {
         survive(name, bytes)?;
     }
 }

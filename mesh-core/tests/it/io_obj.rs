@@ -195,7 +195,7 @@ fn files_that_are_no_meshes() {
         ReadProblem::Binary { .. }
     ));
     assert!(matches!(
-        problem("a.txt", b"Dear all,\n"),
+        problem("a.doc", b"Dear all,\n"),
         ReadProblem::UnknownFormat
     ));
     let missing = io::read_mesh("/nowhere/a.obj").unwrap_err();

@@ -1,11 +1,13 @@
 //! Properties of meshes, files and target surfaces.
 
 mod closest_point;
-mod point_cloud;
-mod triangle_soup;
 mod io_data;
 mod io_mutations;
 mod io_obj;
 mod io_off;
 mod io_ply;
+mod io_stl;
 mod io_support;
+mod io_xyz;
+mod point_cloud;
+mod triangle_soup;

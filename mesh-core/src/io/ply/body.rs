@@ -229,22 +229,29 @@ impl<'a> Body<'a> {
 }
 
 /// The number in the `scalar.size()` bytes of `bytes`, most significant first if `is_big`.
+#[inline]
 fn decode(scalar: Scalar, bytes: &[u8], is_big: bool) -> f64 {
-    let mut raw = [0u8; 8];
-    for (k, &byte) in bytes.iter().enumerate() {
-        raw[if is_big { bytes.len() - 1 - k } else { k }] = byte;
-    }
-    let bits = u64::from_le_bytes(raw);
     match scalar {
-        Scalar::I8 => f64::from(bits as u8 as i8),
-        Scalar::U8 => f64::from(bits as u8),
-        Scalar::I16 => f64::from(bits as u16 as i16),
-        Scalar::U16 => f64::from(bits as u16),
-        Scalar::I32 => f64::from(bits as u32 as i32),
-        Scalar::U32 => f64::from(bits as u32),
-        Scalar::F32 => f64::from(f32::from_bits(bits as u32)),
-        Scalar::F64 => f64::from_bits(bits),
+        Scalar::I8 => f64::from(i8::from_le_bytes(number_bytes(bytes, is_big))),
+        Scalar::U8 => f64::from(u8::from_le_bytes(number_bytes(bytes, is_big))),
+        Scalar::I16 => f64::from(i16::from_le_bytes(number_bytes(bytes, is_big))),
+        Scalar::U16 => f64::from(u16::from_le_bytes(number_bytes(bytes, is_big))),
+        Scalar::I32 => f64::from(i32::from_le_bytes(number_bytes(bytes, is_big))),
+        Scalar::U32 => f64::from(u32::from_le_bytes(number_bytes(bytes, is_big))),
+        Scalar::F32 => f64::from(f32::from_le_bytes(number_bytes(bytes, is_big))),
+        Scalar::F64 => f64::from_le_bytes(number_bytes(bytes, is_big)),
     }
+}
+
+/// The `N` bytes of a number, least significant first.
+#[inline]
+fn number_bytes<const N: usize>(bytes: &[u8], is_big: bool) -> [u8; N] {
+    let mut number = [0; N];
+    number.copy_from_slice(bytes);
+    if is_big {
+        number.reverse();
+    }
+    number
 }
 
 /// Appends a little-endian body of `values` in double precision.

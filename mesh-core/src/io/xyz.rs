@@ -1,0 +1,118 @@
+//! Lists of points: one a line, columns between blanks, commas or semicolons. Written back, only the first three
+//! columns differ.
+
+use super::contents::{Contents, Parsed};
+use super::error::Fault;
+use super::text::{integer, number, Cursor, Field, Splice};
+use crate::{Point3, PolygonSoup, Vector3};
+
+/// How far the length of a row of three columns may be from 1 for them to be normals: text is rounded.
+const UNIT_TOLERANCE: f64 = 0.02;
+
+/// Whether the first line reads as a point.
+pub(super) fn is_points(bytes: &[u8]) -> bool {
+    let mut cursor = Cursor::new(bytes);
+    let Some(first) = cursor.word() else {
+        return false;
+    };
+    let columns = columns(&mut Cursor::starting_at(bytes, first.at));
+    columns.len() >= 3 && columns.iter().all(|c| number(c.text).is_some())
+}
+
+/// The columns of the line that the cursor stands in.
+fn columns<'a>(cursor: &mut Cursor<'a>) -> Vec<Field<'a>> {
+    let mut columns = Vec::new();
+    while let Some(field) = cursor.field() {
+        let mut at = field.at;
+        for text in field.text.split(|b| matches!(b, b',' | b';')) {
+            if !text.is_empty() {
+                columns.push(Field { text, at });
+            }
+            at += text.len() + 1;
+        }
+    }
+    columns
+}
+
+/// Calls `visit` with the columns of each point; a heading and a leading count are none.
+fn each_point<'a>(
+    bytes: &'a [u8],
+    mut visit: impl FnMut(&Cursor<'a>, &[Field<'a>]) -> Result<(), Fault>,
+) -> Result<(), Fault> {
+    let mut cursor = Cursor::new(bytes);
+    let mut is_first = true;
+    while cursor.left() > 0 {
+        let columns = columns(&mut cursor);
+        if !columns.is_empty() && !(is_first && is_heading(&columns)) {
+            visit(&cursor, &columns)?;
+        }
+        is_first &= columns.is_empty();
+        cursor.next_line();
+    }
+    Ok(())
+}
+
+fn is_heading(columns: &[Field<'_>]) -> bool {
+    let is_count = columns.len() == 1 && integer(columns[0].text).is_some();
+    is_count || columns.iter().all(|c| number(c.text).is_none())
+}
+
+/// Reads a file: points in their order.
+pub(super) fn read(bytes: &[u8]) -> Result<Parsed, Fault> {
+    let mut soup = PolygonSoup::default();
+    each_point(bytes, |cursor, columns| {
+        let mut p = Point3::origin();
+        for axis in 0..3 {
+            p[axis] = cursor.coordinate(columns.get(axis).copied())?;
+        }
+        soup.positions.push(p);
+        Ok(())
+    })?;
+    let n_normals = vertex_normals(bytes).map_or(0, |n| n.len());
+    Ok(Parsed {
+        soup,
+        contents: Contents {
+            n_normals,
+            ..Contents::default()
+        },
+    })
+}
+
+/// The last three of six or more columns, if they have length 1 in every row.
+pub(super) fn vertex_normals(bytes: &[u8]) -> Option<Vec<Vector3>> {
+    let mut normals = Vec::new();
+    let mut are_unit = true;
+    let walked = each_point(bytes, |_, columns| {
+        if !are_unit {
+            return Ok(());
+        }
+        let n = columns.iter().skip(3.max(columns.len().saturating_sub(3)));
+        let n: Vec<f64> = n.filter_map(|c| number(c.text)).collect();
+        let n = <[f64; 3]>::try_from(n).map_or_else(|_| Vector3::zeros(), Vector3::from);
+        are_unit = (n.norm() - 1.0).abs() <= UNIT_TOLERANCE;
+        normals.push(n);
+        Ok(())
+    });
+    (walked.is_ok() && are_unit && !normals.is_empty()).then_some(normals)
+}
+
+/// The file with the points at `moved`: coordinates that did not change keep their text.
+pub(super) fn rewrite(
+    bytes: &[u8],
+    rest: &PolygonSoup,
+    moved: &[Point3],
+) -> Result<Vec<u8>, Fault> {
+    let mut splice = Splice::new(bytes);
+    let mut row = 0;
+    each_point(bytes, |_, columns| {
+        let (from, to) = (rest.positions[row], moved[row]);
+        for (axis, column) in columns.iter().take(3).enumerate() {
+            if from[axis].to_bits() != to[axis].to_bits() {
+                splice.replace_text(column.range(), to[axis]);
+            }
+        }
+        row += 1;
+        Ok(())
+    })?;
+    Ok(splice.finish())
+}
