@@ -1,2 +1,7 @@
 //! The `drape` command.
-fn main() {}
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    drape_cli::run(std::env::args_os())
+}

@@ -1,0 +1,118 @@
+//! `drape batch`
+
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use anyhow::{ensure, Context as _};
+use neural_drape::DrapeConfig;
+
+use super::evaluate::finish;
+use crate::output::{check_distinct, check_mesh};
+use crate::settings::SettingsArgs;
+use crate::suite::{self, stem, Method, Pair, Pool, Task};
+
+#[derive(Debug, clap::Args)]
+pub(crate) struct Args {
+    /// Mesh to drape over every target
+    source: PathBuf,
+    /// Meshes or point clouds to drape it over
+    #[arg(required = true)]
+    targets: Vec<PathBuf>,
+    /// Landmark file of each target; {target} is its name, {folder} that of its folder, {source} that of the source
+    #[arg(short, long, value_name = "PATTERN")]
+    landmarks: Option<String>,
+    /// File to write for each target, with the same names in braces
+    #[arg(short, long, value_name = "PATTERN")]
+    output: String,
+    /// Folder for the tables and for what is done already
+    #[arg(long, value_name = "FOLDER", default_value = "drape-batch")]
+    summary: PathBuf,
+    #[command(flatten)]
+    settings: SettingsArgs,
+    /// Runs at a time
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    jobs: usize,
+}
+
+pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
+    ensure!(
+        args.settings.preset.is_none() || args.settings.config.is_none(),
+        "give --preset or --config; a config file may name its preset"
+    );
+    args.settings.settings()?;
+    let tasks = tasks(args)?;
+    let rows = suite::run(&tasks, &args.summary, &Pool::new(args.jobs)?)?;
+    finish(&rows, &args.summary)
+}
+
+fn tasks(args: &Args) -> anyhow::Result<Vec<Task>> {
+    let method = match (&args.settings.config, &args.settings.preset) {
+        (Some(path), _) => Method::Config(path.clone()),
+        (None, preset) => Method::Preset(
+            preset
+                .clone()
+                .unwrap_or_else(|| DrapeConfig::PRESETS[0].to_owned()),
+        ),
+    };
+    let mut tasks: Vec<Task> = Vec::new();
+    for target in &args.targets {
+        let named = |pattern: &str| PathBuf::from(fill(pattern, &args.source, target));
+        let output = named(&args.output);
+        if let Some(other) = tasks.iter().find(|task| task.output == output) {
+            anyhow::bail!(
+                "{}: {} and {} would both be written here; use {{target}} or {{folder}} in --output",
+                output.display(),
+                other.pair.target.display(),
+                target.display()
+            );
+        }
+        if let Some(folder) = output.parent() {
+            std::fs::create_dir_all(folder)
+                .with_context(|| format!("{}: the folder cannot be made", folder.display()))?;
+        }
+        check_mesh(&output)?;
+        check_distinct(&output, &[&args.source, target])?;
+        tasks.push(Task {
+            pair: Pair {
+                name: stem(&output),
+                source: args.source.clone(),
+                target: target.clone(),
+                landmarks: args.landmarks.as_deref().map(named),
+                truth: None,
+                judge: None,
+            },
+            method: method.clone(),
+            seed: args.settings.seed.unwrap_or(0),
+            picture: output.with_extension("png"),
+            output,
+        });
+    }
+    Ok(tasks)
+}
+
+/// The pattern with its names in braces replaced.
+fn fill(pattern: &str, source: &Path, target: &Path) -> String {
+    let folder = target
+        .parent()
+        .and_then(Path::file_name)
+        .unwrap_or_default();
+    pattern
+        .replace("{source}", &stem(source))
+        .replace("{target}", &stem(target))
+        .replace("{folder}", &folder.to_string_lossy())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_in_braces_are_replaced() {
+        let filled = fill(
+            "out/{folder}-{target}-{source}.obj",
+            Path::new("a/horse.obj"),
+            Path::new("b/wolf/target.ply"),
+        );
+        assert_eq!(filled, "out/wolf-target-horse.obj");
+    }
+}

@@ -1,0 +1,101 @@
+//! `drape init`
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use crate::gallery::{Gallery, ViewArgs};
+use crate::initial::{deform, Start};
+use crate::input::{read_positions, Pair};
+use crate::landmarks::doctor;
+use crate::output::{check_distinct, check_mesh, check_writable, say, warn};
+use crate::render::{Image, View};
+use crate::run::judge;
+use crate::usage::Stopwatch;
+
+#[derive(Debug, clap::Args)]
+pub(crate) struct Args {
+    /// Mesh to deform
+    source: PathBuf,
+    /// Mesh or point cloud to bring it to
+    target: PathBuf,
+    /// Places that belong together, as JSON
+    #[arg(short, long, value_name = "FILE")]
+    landmarks: Option<PathBuf>,
+    /// File to write: the source with its vertices moved
+    #[arg(short, long, value_name = "OUT")]
+    output: PathBuf,
+    /// How the source is brought to its landmarks
+    #[arg(long, value_name = "NAME", default_value = "standard")]
+    initial: Start,
+    /// Mesh whose vertices are where those of the result belong, to judge by
+    #[arg(long, value_name = "FILE")]
+    truth: Option<PathBuf>,
+    /// Print JSON
+    #[arg(long)]
+    json: bool,
+    /// Draw source, target and result into a PNG file
+    #[arg(long, value_name = "PNG")]
+    render: Option<PathBuf>,
+    #[command(flatten)]
+    view: ViewArgs,
+}
+
+/// Pixels along the side of a picture.
+const PICTURE_SIZE: usize = 480;
+
+pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
+    let watch = Stopwatch::start();
+    check_mesh(&args.output)?;
+    check_distinct(&args.output, &[&args.source, &args.target])?;
+    if let Some(path) = &args.render {
+        check_writable(path)?;
+    }
+    let pair = Pair::read(&args.source, &args.target, args.landmarks.as_deref())?;
+    let truth = args
+        .truth
+        .as_deref()
+        .map(|path| read_positions(path, &pair.source))
+        .transpose()?;
+    let warnings = doctor::examine(&pair);
+    warn(&warnings);
+    let positions = deform(&pair, args.initial)?;
+    let report = judge(&pair, &positions, truth.as_ref())?;
+    pair.file.write(&args.output, &positions)?;
+    if let Some(path) = &args.render {
+        let gallery = Gallery::new(
+            &pair.source,
+            &pair.target,
+            &pair.landmarks,
+            &positions,
+            (args.view.up, PICTURE_SIZE),
+        );
+        let row = |view| {
+            Image::row(&[
+                gallery.source(view),
+                gallery.target(view),
+                gallery.initial(&positions, view),
+            ])
+        };
+        let rows: Vec<Image> = args
+            .view
+            .views_or(&[View::FRONT_QUARTER])
+            .into_iter()
+            .map(row)
+            .collect();
+        Image::column(&rows).save(path)?;
+    }
+    if args.json {
+        let usage = watch.read().figures();
+        let figures = report
+            .figures()
+            .into_iter()
+            .chain(usage)
+            .collect::<std::collections::BTreeMap<_, _>>();
+        let json =
+            serde_json::json!({ "figures": figures, "report": report, "warnings": warnings });
+        say(&format!("{json:#}\n"))?;
+    } else {
+        say(&format!("{report}\nwrote {}\n", args.output.display()))?;
+    }
+    Ok(ExitCode::SUCCESS)
+}

@@ -1,0 +1,92 @@
+//! `drape metrics`
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use crate::gallery::{Gallery, ViewArgs, DISTANCE_AT_TOP};
+use crate::input::{read_positions, Pair};
+use crate::output::{check_writable, say};
+use crate::render::{Image, View};
+use crate::requirement::Requirements;
+use crate::run::judge;
+
+#[derive(Debug, clap::Args)]
+pub(crate) struct Args {
+    /// Mesh before the drape
+    source: PathBuf,
+    /// Mesh after it, with the same vertices in the same order
+    result: PathBuf,
+    /// Mesh or point cloud it should lie on
+    target: PathBuf,
+    /// Landmarks that the result should meet
+    #[arg(short, long, value_name = "FILE")]
+    landmarks: Option<PathBuf>,
+    /// Mesh whose vertices are where those of the result belong
+    #[arg(long, value_name = "FILE")]
+    truth: Option<PathBuf>,
+    /// Print JSON
+    #[arg(long)]
+    json: bool,
+    /// Draw target, result and distances into a PNG file
+    #[arg(long, value_name = "PNG")]
+    render: Option<PathBuf>,
+    #[command(flatten)]
+    view: ViewArgs,
+    /// Conditions such as 'q>=0.85,folds=0'; the exit code is 1 where one does not hold
+    #[arg(long, value_name = "CONDITIONS")]
+    require: Option<Requirements>,
+}
+
+/// Pixels along the side of a picture.
+const PICTURE_SIZE: usize = 480;
+
+pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
+    if let Some(path) = &args.render {
+        check_writable(path)?;
+    }
+    let pair = Pair::read(&args.source, &args.target, args.landmarks.as_deref())?;
+    let draped = read_positions(&args.result, &pair.source)?;
+    let truth = args
+        .truth
+        .as_deref()
+        .map(|path| read_positions(path, &pair.source))
+        .transpose()?;
+    let report = judge(&pair, &draped, truth.as_ref())?;
+    if args.json {
+        let figures = report
+            .figures()
+            .into_iter()
+            .collect::<std::collections::BTreeMap<_, _>>();
+        let json = serde_json::json!({ "figures": figures, "report": report });
+        say(&format!("{json:#}\n"))?;
+    } else {
+        say(&report.to_string())?;
+    }
+    if let Some(path) = &args.render {
+        let gallery = Gallery::new(
+            &pair.source,
+            &pair.target,
+            &pair.landmarks,
+            &draped,
+            (args.view.up, PICTURE_SIZE),
+        );
+        let row = |view| {
+            Image::row(&[
+                gallery.target(view),
+                gallery.result(&draped, view),
+                gallery.heat(&draped, &report.vertex_distances, DISTANCE_AT_TOP, view),
+            ])
+        };
+        let rows: Vec<Image> = args
+            .view
+            .views_or(&[View::FRONT_QUARTER])
+            .into_iter()
+            .map(row)
+            .collect();
+        Image::column(&rows).save(path)?;
+    }
+    Ok(args
+        .require
+        .as_ref()
+        .map_or(ExitCode::SUCCESS, |r| r.verdict(&report.figures())))
+}

@@ -1,0 +1,30 @@
+//! `drape presets`
+
+use std::process::ExitCode;
+
+use neural_drape::DrapeConfig;
+
+use crate::output::say;
+use crate::settings::{to_toml, SettingsArgs};
+
+#[derive(Debug, clap::Args)]
+pub(crate) struct Args {
+    /// Preset whose settings to print
+    name: Option<String>,
+}
+
+pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
+    match &args.name {
+        None => say(&format!("{}\n", DrapeConfig::PRESETS.join("\n")))?,
+        Some(name) => {
+            let settings = SettingsArgs {
+                preset: Some(name.clone()),
+                config: None,
+                initial: None,
+                seed: None,
+            };
+            say(&to_toml(&settings.settings()?)?)?;
+        }
+    }
+    Ok(ExitCode::SUCCESS)
+}

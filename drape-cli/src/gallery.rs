@@ -1,0 +1,148 @@
+//! The pictures of a run: source, target, initial deformation, result and heat maps, all seen from one direction.
+
+use mesh_core::{FaceData, Landmark, Point3, Positions, VertexData};
+use nalgebra::Matrix3;
+
+use crate::input::{Source, Target};
+use crate::render::{color, draw, Axes, Image, Look, Model, Up, View};
+use crate::similarity::{fit, Match};
+
+/// Distance at the bright end of the heat map, in longest sides of the target's box.
+pub(crate) const DISTANCE_AT_TOP: f64 = 0.01;
+/// Error at the bright end of the heat map of errors against the truth, likewise.
+pub(crate) const TRUTH_AT_TOP: f64 = 0.02;
+/// Stretch above 1 at the bright end of the heat map.
+pub(crate) const STRETCH_AT_TOP: f64 = 1.0;
+
+/// How pictures are taken.
+#[derive(Clone, Debug, clap::Args)]
+pub(crate) struct ViewArgs {
+    /// Direction to look from: quarter, front, side, back, top or AZIMUTH,ELEVATION in degrees; may be repeated
+    #[arg(long, value_name = "VIEW", allow_hyphen_values = true)]
+    pub(crate) view: Vec<View>,
+    /// Axis that points up in the target's file
+    #[arg(long, value_name = "AXIS", default_value = "y")]
+    pub(crate) up: Up,
+}
+
+impl ViewArgs {
+    /// The views asked for, or these.
+    pub(crate) fn views_or(&self, default: &[View]) -> Vec<View> {
+        if self.view.is_empty() {
+            default.to_vec()
+        } else {
+            self.view.clone()
+        }
+    }
+}
+
+/// The shapes of one run, ready to be drawn.
+pub(crate) struct Gallery<'a> {
+    source: &'a Source,
+    target: &'a Target,
+    landmarks: &'a [Landmark],
+    /// Turns the source as the target stands.
+    turn: Matrix3<f64>,
+    up: Up,
+    size: usize,
+}
+
+impl<'a> Gallery<'a> {
+    pub(crate) fn new(
+        source: &'a Source,
+        target: &'a Target,
+        landmarks: &'a [Landmark],
+        initial: &Positions,
+        (up, size): (Up, usize),
+    ) -> Self {
+        let matches = source.rest.iter().zip(initial.iter());
+        let matches: Vec<Match> = matches.map(|(&from, &to)| Match { from, to }).collect();
+        Self {
+            source,
+            target,
+            landmarks,
+            turn: fit(&matches).turn,
+            up,
+            size,
+        }
+    }
+
+    fn shot(&self, view: View) -> (Axes, [usize; 2]) {
+        (Axes::new(view, self.up), [self.size; 2])
+    }
+
+    pub(crate) fn source(&self, view: View) -> Image {
+        let model = self
+            .source
+            .model(&self.source.rest)
+            .mapped(|p| self.turn * p, |n| self.turn * n);
+        let marks = self
+            .landmarks
+            .iter()
+            .map(|l| self.turn * l.source.position(&self.source.rest));
+        let marks: Vec<Point3> = marks.collect();
+        draw(
+            &model,
+            &Look::outlined(color::SOURCE),
+            &marks,
+            &[],
+            self.shot(view),
+        )
+    }
+
+    pub(crate) fn target(&self, view: View) -> Image {
+        let marks: Vec<Point3> = self.landmarks.iter().map(|l| l.target).collect();
+        draw(
+            &self.target.model,
+            &Look::plain(color::TARGET),
+            &marks,
+            &[],
+            self.shot(view),
+        )
+    }
+
+    pub(crate) fn initial(&self, positions: &Positions, view: View) -> Image {
+        self.on_target(positions, &Look::outlined(color::INITIAL), view)
+    }
+
+    pub(crate) fn result(&self, positions: &Positions, view: View) -> Image {
+        self.on_target(positions, &Look::outlined(color::RESULT), view)
+    }
+
+    /// `values` on the mesh, dark at 0 and bright at `top`.
+    pub(crate) fn heat(
+        &self,
+        positions: &Positions,
+        values: &VertexData<f64>,
+        top: f64,
+        view: View,
+    ) -> Image {
+        let shares = values.iter().map(|v| v / top).collect();
+        self.on_target(positions, &Look::heat(shares), view)
+    }
+
+    /// A mesh in the target's coordinates, framed with the target.
+    fn on_target(&self, positions: &Positions, look: &Look, view: View) -> Image {
+        let model: Model = self.source.model(positions);
+        draw(
+            &model,
+            look,
+            &[],
+            &self.target.model.seen_points(),
+            self.shot(view),
+        )
+    }
+
+    /// Stretch above 1 at each vertex: the mean over its faces.
+    pub(crate) fn stretch_at_vertices(&self, face_stretch: &FaceData<f64>) -> VertexData<f64> {
+        let mesh = &self.source.mesh;
+        let mut sums = VertexData::new(mesh.n_vertices(), (0.0, 0.0));
+        for f in mesh.faces() {
+            for &v in mesh.face_vertices(f) {
+                sums[v].0 += (face_stretch[f] - 1.0).max(0.0);
+                sums[v].1 += 1.0;
+            }
+        }
+        sums.map(|&(sum, n): &(f64, f64)| sum / n.max(1.0))
+    }
+}

@@ -1,0 +1,194 @@
+//! What a command reads: a source to deform, a target to drape onto, landmarks between them.
+
+use std::path::Path;
+
+use anyhow::{ensure, Context as _};
+use mesh_core::bvh::closest_point_on_triangle;
+use mesh_core::io::{self, MeshFile};
+use mesh_core::{
+    FaceId, HalfedgeMesh, Landmark, Location, MeshPoint, Point3, PointCloud, PolygonSoup,
+    Positions, TargetSurface, TriangleBvh, TriangleSoup, Triangulation,
+};
+
+use crate::landmarks;
+use crate::render::Model;
+
+/// A mesh to deform: connectivity, rest positions, and its polygons as triangles.
+pub(crate) struct Source {
+    pub(crate) mesh: HalfedgeMesh,
+    pub(crate) rest: Positions,
+    pub(crate) triangulation: Triangulation,
+}
+
+impl Source {
+    pub(crate) fn of_soup(soup: PolygonSoup) -> anyhow::Result<Self> {
+        let (mesh, rest) = soup.into_halfedge()?;
+        let triangulation = Triangulation::new(&mesh, &rest);
+        ensure!(
+            !triangulation.is_empty(),
+            "no face has three different corners"
+        );
+        Ok(Self {
+            mesh,
+            rest,
+            triangulation,
+        })
+    }
+
+    /// The place of the surface closest to `point`, on one face or anywhere.
+    pub(crate) fn closest_place(
+        &self,
+        point: &Point3,
+        face: Option<FaceId>,
+    ) -> anyhow::Result<MeshPoint> {
+        let nearest = match face {
+            Some(face) => self.closest_on_face(point, face),
+            None => self.closest_anywhere(point),
+        };
+        let (row, weights) = nearest.context("this face has no area")?;
+        Ok(MeshPoint::barycentric(
+            self.triangulation.triangles()[row],
+            weights,
+        ))
+    }
+
+    fn closest_on_face(&self, point: &Point3, face: FaceId) -> Option<(usize, [f64; 3])> {
+        let rows =
+            (0..self.triangulation.len()).filter(|&row| self.triangulation.parent(row) == face);
+        let candidates = rows.map(|row| {
+            let corners = self.triangulation.triangles()[row].map(|v| self.rest[v]);
+            let at = closest_point_on_triangle(point, &corners);
+            (at.distance_squared, row, at.barycentric)
+        });
+        candidates
+            .min_by(|a, b| a.0.total_cmp(&b.0))
+            .map(|(_, row, weights)| (row, weights))
+    }
+
+    fn closest_anywhere(&self, point: &Point3) -> Option<(usize, [f64; 3])> {
+        let bvh = TriangleBvh::new(self.triangulation.corners(&self.rest).collect());
+        match bvh.closest_point(point)?.location {
+            Location::Triangle { index, barycentric } => Some((index as usize, barycentric)),
+            Location::Point { .. } => None,
+        }
+    }
+
+    /// The mesh at `positions`, ready to be drawn.
+    pub(crate) fn model(&self, positions: &Positions) -> Model {
+        Model::mesh(&self.mesh, &self.triangulation, positions)
+    }
+}
+
+/// A shape to drape onto. A file without faces is a cloud.
+pub(crate) struct Target {
+    pub(crate) surface: Box<dyn TargetSurface>,
+    /// The points of the file, in its order.
+    pub(crate) vertices: Vec<Point3>,
+    pub(crate) model: Model,
+}
+
+impl Target {
+    fn of_file(file: MeshFile) -> anyhow::Result<Self> {
+        if !file.soup().faces.is_empty() {
+            return Ok(Self {
+                vertices: file.soup().positions.clone(),
+                model: Model::of_soup(file.soup())?,
+                surface: Box::new(TriangleSoup::new(file.into_soup())?),
+            });
+        }
+        let normals = file.vertex_normals();
+        let vertices = file.into_soup().positions;
+        let cloud = PointCloud::new(vertices.clone(), normals)?;
+        let normals: Vec<_> = (0..vertices.len() as u32)
+            .map(|index| cloud.normal(&Location::Point { index }).unwrap_or_default())
+            .collect();
+        Ok(Self {
+            model: Model::cloud(&vertices, Some(&normals)),
+            surface: Box::new(cloud),
+            vertices,
+        })
+    }
+}
+
+/// Everything that a drape starts from.
+pub(crate) struct Pair {
+    pub(crate) file: MeshFile,
+    pub(crate) source: Source,
+    pub(crate) target: Target,
+    pub(crate) landmarks: Vec<Landmark>,
+}
+
+impl Pair {
+    pub(crate) fn read(
+        source: &Path,
+        target: &Path,
+        landmarks: Option<&Path>,
+    ) -> anyhow::Result<Self> {
+        let (file, source) = read_source(source)?;
+        let target = read_target(target)?;
+        let landmarks = match landmarks {
+            Some(path) => landmarks::read(path)?.resolve(&source, &target.vertices)?,
+            None => Vec::new(),
+        };
+        Ok(Self {
+            file,
+            source,
+            target,
+            landmarks,
+        })
+    }
+}
+
+/// A mesh to deform and its file, to write it back.
+pub(crate) fn read_source(path: &Path) -> anyhow::Result<(MeshFile, Source)> {
+    let file = io::read_mesh(path)?;
+    let source =
+        Source::of_soup(file.soup().clone()).with_context(|| path.display().to_string())?;
+    Ok((file, source))
+}
+
+pub(crate) fn read_target(path: &Path) -> anyhow::Result<Target> {
+    Target::of_file(io::read_mesh(path)?).with_context(|| path.display().to_string())
+}
+
+/// The positions of a file that must have the vertices of another.
+pub(crate) fn read_positions(path: &Path, source: &Source) -> anyhow::Result<Positions> {
+    let positions = io::read_soup(path)?.positions;
+    let (found, expected) = (positions.len(), source.mesh.n_vertices());
+    ensure!(
+        found == expected,
+        "{}: has {found} vertices, but the source has {expected}",
+        path.display()
+    );
+    Ok(Positions::from(positions))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use mesh_core::shapes;
+
+    #[test]
+    fn a_point_finds_its_place_on_the_surface() {
+        let source = Source::of_soup(shapes::quad_sphere(4)).unwrap();
+        let point = Point3::new(0.3, 2.0, -0.4);
+        let place = source
+            .closest_place(&point, None)
+            .unwrap()
+            .position(&source.rest);
+        let corners = source.triangulation.corners(&source.rest);
+        let brute =
+            corners.map(|t| (closest_point_on_triangle(&point, &t).point(&t) - point).norm());
+        let nearest = brute.fold(f64::INFINITY, f64::min);
+        assert!(((place - point).norm() - nearest).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_mesh_without_a_triangle_is_refused() {
+        let soup = PolygonSoup {
+            positions: vec![Point3::origin(); 2],
+            faces: vec![vec![0, 1]],
+        };
+        assert!(Source::of_soup(soup).is_err());
+    }
+}

@@ -1,0 +1,6 @@
+//! Landmarks: their files, and a doctor who looks at them before and after a run.
+
+pub(crate) mod doctor;
+mod file;
+
+pub(crate) use file::{label, read};

@@ -1,0 +1,94 @@
+//! The `drape` command: drape your mesh over that shape.
+//!
+//! Everything is in [`run`], so that the binary is one line and tests can be another.
+
+#![allow(
+    clippy::print_stdout,
+    clippy::print_stderr,
+    reason = "the command line speaks to its user"
+)]
+
+mod commands;
+mod demo;
+mod gallery;
+mod initial;
+mod input;
+mod inspection;
+mod landmarks;
+mod output;
+mod progress;
+mod render;
+mod report;
+mod requirement;
+mod run;
+mod settings;
+mod similarity;
+mod suite;
+mod usage;
+
+use std::ffi::OsString;
+use std::process::ExitCode;
+
+use anyhow::Context as _;
+use clap::error::ErrorKind;
+use clap::Parser;
+
+/// Bad input, bad options, or a run that could not be finished.
+const FAILED: u8 = 2;
+
+/// Drape your mesh over that shape.
+#[derive(Debug, Parser)]
+#[command(name = "drape", version, about, max_term_width = 100)]
+struct Cli {
+    /// Threads to use; all processors where not given. The result does not depend on it
+    #[arg(long, global = true, value_name = "N")]
+    threads: Option<std::num::NonZeroUsize>,
+    #[command(subcommand)]
+    command: commands::Command,
+}
+
+/// Runs the command line `args`, program name first. Exit codes: 0 done, 1 a requirement is not met, 2 failed.
+pub fn run(args: impl IntoIterator<Item = OsString>) -> ExitCode {
+    let cli = match Cli::try_parse_from(args) {
+        Ok(cli) => cli,
+        Err(error) => return refuse(&error),
+    };
+    cli.run().unwrap_or_else(|error| {
+        eprintln!("error: {}", one_line(&format!("{error:#}")));
+        ExitCode::from(FAILED)
+    })
+}
+
+impl Cli {
+    fn run(&self) -> anyhow::Result<ExitCode> {
+        let Some(n) = self.threads else {
+            return self.command.run();
+        };
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(n.get()).build();
+        pool.context("cannot start threads")?
+            .install(|| self.command.run())
+    }
+}
+
+/// Help and version go to stdout as they are; a mistake gives one line.
+fn refuse(error: &clap::Error) -> ExitCode {
+    if error.kind() == ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand {
+        eprint!("{error}");
+        return ExitCode::from(FAILED);
+    }
+    if !error.use_stderr() {
+        return match output::say(&error.render().to_string()) {
+            Ok(()) => ExitCode::SUCCESS,
+            Err(_) => ExitCode::from(FAILED),
+        };
+    }
+    let text = error.render().to_string();
+    let mistake = text.split("\n\n").next().unwrap_or_default();
+    eprintln!("{} (see drape --help)", one_line(mistake));
+    ExitCode::from(FAILED)
+}
+
+/// Text without line breaks.
+fn one_line(text: &str) -> String {
+    text.lines().map(str::trim).collect::<Vec<_>>().join(" ")
+}

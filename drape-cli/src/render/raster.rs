@@ -1,0 +1,397 @@
+//! A small rasteriser: shaded triangles with polygon outlines, discs for points, on a depth buffer.
+
+use mesh_core::Vector3;
+
+use super::camera::{Axes, Camera};
+use super::color::{self, Rgb};
+use super::image::Image;
+use super::model::{Facet, Model};
+
+/// Canvas pixels along each side of a picture pixel.
+const SUPERSAMPLING: usize = 2;
+/// Half the width of an outline, in canvas pixels.
+const HALF_OUTLINE: f64 = 0.9;
+const OUTLINE: Rgb = [0.09, 0.11, 0.15];
+/// Mean length of an outline, in canvas pixels, at which it is drawn fully: denser nets fade into the shading.
+const CLEAR_OUTLINE_LENGTH: f64 = 16.0;
+const MARKER_RADIUS: f64 = 7.0;
+
+/// How a shape looks.
+#[derive(Clone, Debug)]
+pub(crate) struct Look {
+    /// Colour of the material.
+    pub(crate) color: Rgb,
+    /// One value from 0 to 1 per vertex, drawn as a heat map in place of the material.
+    pub(crate) heat: Option<Vec<f64>>,
+    /// Whether the sides of polygons are drawn.
+    pub(crate) has_outlines: bool,
+}
+
+impl Look {
+    pub(crate) fn plain(color: Rgb) -> Self {
+        Self {
+            color,
+            heat: None,
+            has_outlines: false,
+        }
+    }
+
+    pub(crate) fn outlined(color: Rgb) -> Self {
+        Self {
+            has_outlines: true,
+            ..Self::plain(color)
+        }
+    }
+
+    pub(crate) fn heat(values: Vec<f64>) -> Self {
+        Self {
+            heat: Some(values),
+            ..Self::plain(color::TARGET)
+        }
+    }
+
+    fn color_of(&self, vertex: usize) -> Rgb {
+        self.heat
+            .as_ref()
+            .map_or(self.color, |values| color::heat(values[vertex]))
+    }
+}
+
+/// Draws `model` in a picture of `size` pixels, framed so that `frame` and the model itself fit, with a dot at each
+/// of `markers`.
+pub(crate) fn draw(
+    model: &Model,
+    look: &Look,
+    markers: &[mesh_core::Point3],
+    frame: &[mesh_core::Point3],
+    (axes, size): (Axes, [usize; 2]),
+) -> Image {
+    let canvas_size = size.map(|s| s * SUPERSAMPLING);
+    let seen = model.seen_points();
+    let camera = Camera::fit(axes, seen.iter().chain(frame), canvas_size);
+    let mut canvas = Canvas::new(canvas_size);
+    if model.facets.is_empty() {
+        draw_cloud(&mut canvas, model, look, &camera);
+    } else {
+        draw_facets(&mut canvas, model, look, &camera);
+    }
+    for marker in markers {
+        let [x, y, z] = camera.project(marker);
+        canvas.ball([x, y, z + MARKER_RADIUS], MARKER_RADIUS, color::LANDMARK);
+    }
+    canvas.into_image()
+}
+
+fn draw_facets(canvas: &mut Canvas, model: &Model, look: &Look, camera: &Camera) {
+    let projected: Vec<[f64; 3]> = model.positions.iter().map(|p| camera.project(p)).collect();
+    let outline_strength = if look.has_outlines {
+        outline_strength(&projected, &model.facets)
+    } else {
+        0.0
+    };
+    for facet in &model.facets {
+        let Some(shape) = ScreenTriangle::new(facet.corners.map(|c| projected[c])) else {
+            continue;
+        };
+        let flat = mesh_core::measure::triangle_normal(facet.corners.map(|c| model.positions[c]))
+            .unwrap_or_default();
+        let is_back = flat.dot(&camera.axes.towards_viewer) < 0.0;
+        let colors = facet.corners.map(|c| {
+            let smooth = model.normals[c];
+            let normal = if smooth.dot(&flat) > 0.2 {
+                smooth
+            } else {
+                flat
+            };
+            shade(look.color_of(c), normal, is_back, &camera.axes)
+        });
+        canvas.fill(&shape, facet, colors, outline_strength as f32);
+    }
+}
+
+/// Full strength for clear nets, fading as their lines come closer than they are wide.
+fn outline_strength(projected: &[[f64; 3]], facets: &[Facet]) -> f64 {
+    let lengths = facets.iter().flat_map(|f| {
+        (0..3)
+            .filter(|&k| f.is_outline[k])
+            .map(|k| side_length(projected[f.corners[k]], projected[f.corners[(k + 1) % 3]]))
+    });
+    let (sum, count) = lengths.fold((0.0, 0usize), |(s, n), length| (s + length, n + 1));
+    (sum / count.max(1) as f64 / CLEAR_OUTLINE_LENGTH).clamp(0.12, 0.85)
+}
+
+fn side_length(a: [f64; 3], b: [f64; 3]) -> f64 {
+    (b[0] - a[0]).hypot(b[1] - a[1])
+}
+
+fn draw_cloud(canvas: &mut Canvas, model: &Model, look: &Look, camera: &Camera) {
+    let [width, height] = canvas.size.map(|s| s as f64);
+    let spacing = (0.4 * width * height / model.positions.len().max(1) as f64).sqrt();
+    let radius = (0.75 * spacing).clamp(1.5, 8.0);
+    for (i, p) in model.positions.iter().enumerate() {
+        let towards = camera.axes.towards_viewer;
+        let normal = Some(model.normals[i])
+            .filter(|n| n.norm_squared() > 0.0)
+            .unwrap_or(towards);
+        let is_back = normal.dot(&towards) < 0.0;
+        let color = shade(look.color_of(i), normal, is_back, &camera.axes);
+        canvas.disc(camera.project(p), radius, color);
+    }
+}
+
+/// Soft light from above left, a little from the viewer and the sky; the inside of a surface is darker.
+fn shade(material: Rgb, normal: Vector3, is_back: bool, axes: &Axes) -> Rgb {
+    let n = if is_back { -normal } else { normal };
+    let key = (axes.towards_viewer * 0.62 + axes.up * 0.66 - axes.right * 0.42)
+        .try_normalize(0.0)
+        .unwrap_or_default();
+    let halfway = (key + axes.towards_viewer)
+        .try_normalize(0.0)
+        .unwrap_or_default();
+    let diffuse = 0.52 * n.dot(&key).max(0.0) + 0.20 * n.dot(&axes.towards_viewer).max(0.0);
+    let sky = 0.34 + 0.10 * n.dot(&axes.up);
+    let shine = 0.10 * n.dot(&halfway).max(0.0).powi(24);
+    let light = if is_back { 0.62 } else { 1.0 } * (diffuse + sky);
+    material.map(|m| (m * light as f32 + shine as f32).min(1.0))
+}
+
+/// A triangle on the canvas that covers some area.
+struct ScreenTriangle {
+    corners: [[f64; 3]; 3],
+    twice_area: f64,
+    side_lengths: [f64; 3],
+}
+
+impl ScreenTriangle {
+    fn new(corners: [[f64; 3]; 3]) -> Option<Self> {
+        let [a, b, c] = corners;
+        let twice_area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+        (twice_area.is_finite() && twice_area.abs() > 1e-9).then(|| Self {
+            corners,
+            twice_area,
+            side_lengths: [side_length(a, b), side_length(b, c), side_length(c, a)],
+        })
+    }
+
+    /// Barycentric coordinates of a canvas point.
+    fn weights(&self, x: f64, y: f64) -> [f64; 3] {
+        let [a, b, c] = self.corners;
+        let part = |p: [f64; 3], q: [f64; 3]| {
+            ((p[0] - x) * (q[1] - y) - (p[1] - y) * (q[0] - x)) / self.twice_area
+        };
+        [part(b, c), part(c, a), part(a, b)]
+    }
+
+    /// The canvas pixels that may be covered, along `axis`.
+    fn range(&self, axis: usize, size: usize) -> std::ops::Range<usize> {
+        let values = self.corners.map(|c| c[axis]);
+        let low = values
+            .into_iter()
+            .fold(f64::INFINITY, f64::min)
+            .floor()
+            .max(0.0);
+        let high = values
+            .into_iter()
+            .fold(0.0, f64::max)
+            .ceil()
+            .min(size as f64);
+        low as usize..(high as usize).max(low as usize)
+    }
+}
+
+/// Colours and depths; depth grows towards the viewer and is −∞ where nothing is.
+struct Canvas {
+    size: [usize; 2],
+    colors: Vec<Rgb>,
+    depths: Vec<f32>,
+}
+
+impl Canvas {
+    fn new(size: [usize; 2]) -> Self {
+        Self {
+            size,
+            colors: vec![[0.0; 3]; size[0] * size[1]],
+            depths: vec![f32::NEG_INFINITY; size[0] * size[1]],
+        }
+    }
+
+    fn set(&mut self, x: usize, y: usize, depth: f64, color: impl FnOnce() -> Rgb) {
+        let at = y * self.size[0] + x;
+        if depth as f32 > self.depths[at] {
+            self.depths[at] = depth as f32;
+            self.colors[at] = color();
+        }
+    }
+
+    fn fill(
+        &mut self,
+        shape: &ScreenTriangle,
+        facet: &Facet,
+        colors: [Rgb; 3],
+        outline_strength: f32,
+    ) {
+        for y in shape.range(1, self.size[1]) {
+            for x in shape.range(0, self.size[0]) {
+                let w = shape.weights(x as f64 + 0.5, y as f64 + 0.5);
+                if w.iter().any(|&w| w < 0.0) {
+                    continue;
+                }
+                let depth = (0..3).map(|k| w[k] * shape.corners[k][2]).sum();
+                self.set(x, y, depth, || {
+                    let inside =
+                        [0, 1, 2].map(|c| (0..3).map(|k| w[k] as f32 * colors[k][c]).sum());
+                    color::mix(
+                        inside,
+                        OUTLINE,
+                        outline_strength * outline_coverage(shape, facet, w),
+                    )
+                });
+            }
+        }
+    }
+
+    /// A flat disc that faces the viewer.
+    fn disc(&mut self, [cx, cy, depth]: [f64; 3], radius: f64, color: Rgb) {
+        self.round([cx, cy], radius, |_, _| (depth, color));
+    }
+
+    /// A small shaded ball with a light rim.
+    fn ball(&mut self, [cx, cy, depth]: [f64; 3], radius: f64, color: Rgb) {
+        self.round([cx, cy], radius, |dx, dy| {
+            let height = (1.0 - (dx * dx + dy * dy)).max(0.0).sqrt();
+            let light = 0.65 + 0.35 * (0.8 * height - 0.4 * (dx + dy)).max(0.0);
+            let rim = [1.0; 3];
+            let fill = color.map(|c| c * light as f32);
+            (
+                depth + height * radius,
+                if dx.hypot(dy) > 0.78 { rim } else { fill },
+            )
+        });
+    }
+
+    /// Sets the pixels within `radius` of a point; `paint` gets offsets in units of the radius.
+    fn round(&mut self, [cx, cy]: [f64; 2], radius: f64, paint: impl Fn(f64, f64) -> (f64, Rgb)) {
+        let range = |c: f64, size: usize| {
+            let low = (c - radius).floor().clamp(0.0, size as f64) as usize;
+            low..((c + radius).ceil().clamp(low as f64, size as f64) as usize)
+        };
+        for y in range(cy, self.size[1]) {
+            for x in range(cx, self.size[0]) {
+                let (dx, dy) = (
+                    (x as f64 + 0.5 - cx) / radius,
+                    (y as f64 + 0.5 - cy) / radius,
+                );
+                if dx * dx + dy * dy <= 1.0 {
+                    let (depth, color) = paint(dx, dy);
+                    self.set(x, y, depth, || color);
+                }
+            }
+        }
+    }
+
+    /// Averages the canvas pixels of each picture pixel; uncovered ones become transparency.
+    fn into_image(self) -> Image {
+        let mut image = Image::new(self.size[0] / SUPERSAMPLING, self.size[1] / SUPERSAMPLING);
+        for y in 0..image.height() {
+            for x in 0..image.width() {
+                image.set_pixel(x, y, self.average(x, y));
+            }
+        }
+        image
+    }
+
+    fn average(&self, x: usize, y: usize) -> [u8; 4] {
+        let mut sum = [0.0; 3];
+        let mut n_covered = 0;
+        for j in 0..SUPERSAMPLING {
+            for i in 0..SUPERSAMPLING {
+                let at = (y * SUPERSAMPLING + j) * self.size[0] + x * SUPERSAMPLING + i;
+                if self.depths[at] > f32::NEG_INFINITY {
+                    n_covered += 1;
+                    sum = [0, 1, 2].map(|k| sum[k] + self.colors[at][k]);
+                }
+            }
+        }
+        let [r, g, b] = sum.map(|s| color::byte(s / n_covered.max(1) as f32));
+        let alpha = n_covered as f32 / (SUPERSAMPLING * SUPERSAMPLING) as f32;
+        [r, g, b, color::byte(alpha)]
+    }
+}
+
+/// How much of the pixel an outline covers, from its distance to the polygon's sides.
+fn outline_coverage(shape: &ScreenTriangle, facet: &Facet, w: [f64; 3]) -> f32 {
+    let nearest = (0..3)
+        .filter(|&k| facet.is_outline[k])
+        .map(|k| w[(k + 2) % 3] * shape.twice_area.abs() / shape.side_lengths[k])
+        .fold(f64::INFINITY, f64::min);
+    (HALF_OUTLINE + 0.5 - nearest).clamp(0.0, 1.0) as f32
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::camera::{Up, View};
+    use super::*;
+
+    fn shot(azimuth: f64) -> (Axes, [usize; 2]) {
+        (
+            Axes::new(
+                View {
+                    azimuth,
+                    elevation: 0.0,
+                },
+                Up::Y,
+            ),
+            [64, 64],
+        )
+    }
+
+    #[test]
+    fn a_sphere_is_a_disc_of_the_right_size() {
+        let model = Model::of_soup(&mesh_core::shapes::icosphere(3)).unwrap();
+        let image = draw(&model, &Look::plain(color::RESULT), &[], &[], shot(20.0));
+        let covered: f64 = (0..64 * 64)
+            .map(|i| f64::from(image.pixel(i % 64, i / 64)[3]) / 255.0)
+            .sum();
+        let radius = 0.5 * 64.0 * 0.92;
+        let disc = std::f64::consts::PI * radius * radius;
+        assert!((covered / disc - 1.0).abs() < 0.03, "{covered} of {disc}");
+        assert_eq!(image.pixel(0, 0)[3], 0);
+    }
+
+    #[test]
+    fn what_is_nearer_hides_what_is_behind() {
+        let mut soup = mesh_core::shapes::open_grid(1, 1);
+        let near = mesh_core::shapes::open_grid(1, 1);
+        soup.positions
+            .extend(near.positions.iter().map(|p| p + Vector3::z()));
+        soup.faces.push(vec![4, 5, 7, 6]);
+        let model = Model::of_soup(&soup).unwrap();
+        let heat = vec![0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0];
+        let image = draw(&model, &Look::heat(heat), &[], &[], shot(0.0));
+        let [r, _, b, _] = image.pixel(32, 32);
+        assert!(r > b, "the bright sheet in front is seen");
+    }
+
+    #[test]
+    fn outlines_darken_the_sides_of_a_quad_but_not_its_diagonal() {
+        let model = Model::of_soup(&mesh_core::shapes::open_grid(1, 1)).unwrap();
+        let image = draw(&model, &Look::outlined([1.0; 3]), &[], &[], shot(0.0));
+        let middle = image.pixel(32, 32)[0];
+        let on_diagonals = [image.pixel(20, 20)[0], image.pixel(44, 20)[0]];
+        assert!(on_diagonals.iter().all(|&p| p.abs_diff(middle) < 12));
+        assert!(image.pixel(2, 32)[0] < middle - 60);
+    }
+
+    #[test]
+    fn clouds_and_empty_models_draw() {
+        let cloud = Model::cloud(&mesh_core::shapes::icosphere(2).positions, None);
+        assert!(
+            draw(&cloud, &Look::plain(color::TARGET), &[], &[], shot(0.0)).pixel(32, 32)[3] > 0
+        );
+        let nothing = Model::cloud(&[], None);
+        assert_eq!(
+            draw(&nothing, &Look::plain(color::TARGET), &[], &[], shot(0.0)).pixel(32, 32)[3],
+            0
+        );
+    }
+}

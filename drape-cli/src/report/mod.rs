@@ -1,0 +1,240 @@
+//! The page of one run: pictures, figures, curves, landmarks, settings.
+
+mod chart;
+pub(crate) mod html;
+
+use std::fmt::Write as _;
+
+use anyhow::Context as _;
+use mesh_core::{Positions, VertexData};
+
+use crate::gallery::{Gallery, DISTANCE_AT_TOP, STRETCH_AT_TOP, TRUTH_AT_TOP};
+use crate::landmarks::label;
+use crate::render::{Image, View};
+use crate::run::Run;
+use crate::settings;
+use html::{escape, figure, heat_legend, section, table};
+
+/// What the page tells beside the run itself.
+pub(crate) struct Page<'a> {
+    pub(crate) title: &'a str,
+    pub(crate) run: &'a Run,
+    pub(crate) gallery: &'a Gallery<'a>,
+    pub(crate) views: &'a [View],
+    /// Where each vertex belongs, if known.
+    pub(crate) truth: Option<&'a Positions>,
+}
+
+impl Page<'_> {
+    /// The page as one file that needs no other.
+    pub(crate) fn to_html(&self) -> anyhow::Result<String> {
+        let run = self.run;
+        let mut body = format!(
+            "<h1>{}</h1>\n<p class=\"soft\">{}</p>\n",
+            escape(self.title),
+            escape(&self.subtitle())
+        );
+        body += &cards(run);
+        body += &warnings(&run.warnings);
+        body += &section("Pictures", &self.pictures()?);
+        body += &section("Heat maps", &self.heat_maps()?);
+        body += &section("Figures", &figures(run));
+        body += &section("Landmarks", &landmarks(run));
+        body += &section("Loss", &curves(run));
+        body += &section("Time and memory", &table(times(run)));
+        let settings = settings::to_toml(&run.settings)?;
+        let fold = format!(
+            "<details><summary>preset {}, as TOML</summary><pre>{}</pre></details>\n",
+            escape(&run.settings.preset),
+            escape(&settings)
+        );
+        body += &section("Settings", &fold);
+        Ok(html::page(self.title, &body))
+    }
+
+    fn subtitle(&self) -> String {
+        let (report, settings) = (&self.run.report, &self.run.settings);
+        let n_landmarks = report
+            .landmarks
+            .as_ref()
+            .map_or(0, |fit| fit.residuals.len());
+        format!(
+            "{} vertices, {} faces · {n_landmarks} landmarks · preset {}, seed {}",
+            report.n_vertices, report.n_faces, settings.preset, settings.config.seed
+        )
+    }
+
+    fn pictures(&self) -> anyhow::Result<String> {
+        let (gallery, run) = (self.gallery, self.run);
+        let mut rows = String::new();
+        for &view in self.views {
+            let row = [
+                ("source, turned as the target", gallery.source(view)),
+                ("target", gallery.target(view)),
+                ("initial deformation", gallery.initial(&run.initial, view)),
+                ("result", gallery.result(&run.draped, view)),
+            ];
+            rows += &figures_of(row)?;
+        }
+        Ok(format!("<div class=\"pictures\">{rows}</div>\n"))
+    }
+
+    fn heat_maps(&self) -> anyhow::Result<String> {
+        let distance = &self.run.report.vertex_distances;
+        let mut html = self.heat_row("distance to the target", distance, DISTANCE_AT_TOP)?;
+        html += &heat_legend("0", &percent_of_side(DISTANCE_AT_TOP));
+        html += &self.heat_row(
+            "stretch",
+            &self
+                .gallery
+                .stretch_at_vertices(&self.run.report.face_stretch),
+            STRETCH_AT_TOP,
+        )?;
+        html += &heat_legend("undistorted", &format!("{} or more", 1.0 + STRETCH_AT_TOP));
+        if let Some(truth) = self.truth {
+            let error = self.run.distances_from(truth);
+            html += &self.heat_row("distance from the true place", &error, TRUTH_AT_TOP)?;
+            html += &heat_legend("0", &percent_of_side(TRUTH_AT_TOP));
+        }
+        Ok(html)
+    }
+
+    fn heat_row(
+        &self,
+        caption: &str,
+        values: &VertexData<f64>,
+        top: f64,
+    ) -> anyhow::Result<String> {
+        let draped = &self.run.draped;
+        let pictures = self
+            .views
+            .iter()
+            .map(|&view| (caption, self.gallery.heat(draped, values, top, view)));
+        Ok(format!(
+            "<div class=\"pictures\">{}</div>\n",
+            figures_of(pictures)?
+        ))
+    }
+}
+
+fn percent_of_side(share: f64) -> String {
+    format!("{} % of the target's longest side", share * 100.0)
+}
+
+fn figures_of<'c>(pictures: impl IntoIterator<Item = (&'c str, Image)>) -> anyhow::Result<String> {
+    let figures = pictures.into_iter().map(|(caption, image)| {
+        let address = image.data_uri().context("a picture of the report")?;
+        Ok(figure(&address, caption))
+    });
+    figures.collect()
+}
+
+/// The figures that tell most, large.
+fn cards(run: &Run) -> String {
+    let r = &run.report;
+    let mut cards = vec![
+        ("Q transfer, 1 is best", format!("{:.3}", r.q_transfer)),
+        (
+            "Hausdorff, % of side",
+            format!("{:.2}", 100.0 * r.hausdorff),
+        ),
+        (
+            "mean distance, % of side",
+            format!("{:.3}", 100.0 * r.mean_l2_sum()),
+        ),
+        ("Dirichlet, 1 is undistorted", format!("{:.3}", r.dirichlet)),
+        ("new folds", r.defects.folds.to_string()),
+        ("new skinny faces", r.defects.skinny_new.to_string()),
+    ];
+    cards.extend(
+        r.landmarks
+            .as_ref()
+            .map(|fit| ("landmark RMS, % of side", format!("{:.2}", 100.0 * fit.rms))),
+    );
+    cards.extend(
+        r.truth
+            .as_ref()
+            .map(|t| ("mean error, % of side", format!("{:.3}", 100.0 * t.mean))),
+    );
+    cards.push(("seconds", format!("{:.1}", run.usage.wall_seconds)));
+    let cards = cards.iter().map(|(name, value)| {
+        format!("<div class=\"card\"><b>{value}</b><span>{name}</span></div>")
+    });
+    format!("<div class=\"cards\">{}</div>\n", cards.collect::<String>())
+}
+
+fn warnings(warnings: &[String]) -> String {
+    let items: String = warnings
+        .iter()
+        .map(|w| format!("<li>{}</li>", escape(w)))
+        .collect();
+    section(
+        "Warnings",
+        &if items.is_empty() {
+            items
+        } else {
+            format!("<ul class=\"bad\">{items}</ul>\n")
+        },
+    )
+}
+
+fn figures(run: &Run) -> String {
+    let rows = run
+        .report
+        .figures()
+        .into_iter()
+        .map(|(name, value)| (name.replace('_', " "), number(value)));
+    format!(
+        "{}<p class=\"soft\">Lengths are in longest sides of the target's box; distances from point to surface.</p>\n",
+        table(rows)
+    )
+}
+
+fn number(value: f64) -> String {
+    if value.fract() == 0.0 && value.abs() < 1e9 {
+        format!("{value:.0}")
+    } else {
+        format!("{value:.5}")
+    }
+}
+
+/// Each landmark with a bar as long as its distance.
+fn landmarks(run: &Run) -> String {
+    let Some(fit) = &run.report.landmarks else {
+        return String::new();
+    };
+    let mut html = String::from("<table>");
+    for (k, residual) in fit.residuals.iter().enumerate() {
+        let width = if fit.max > 0.0 {
+            160.0 * residual.distance / fit.max
+        } else {
+            0.0
+        };
+        let _ = write!(
+            html,
+            "<tr><th>{}</th><td><i class=\"bar\" style=\"width:{width:.0}px\"></i>{:.3} %</td></tr>",
+            escape(&label(k, residual.name.as_deref())),
+            100.0 * residual.distance
+        );
+    }
+    html + "</table>\n<p class=\"soft\">Distance from where it belongs, in % of the target's longest side.</p>\n"
+}
+
+fn curves(run: &Run) -> String {
+    let charts: String = run.history.curves.iter().map(chart::chart).collect();
+    if charts.is_empty() {
+        charts
+    } else {
+        format!("<div class=\"charts\">{charts}</div>\n")
+    }
+}
+
+fn times(run: &Run) -> Vec<(String, String)> {
+    let mut rows: Vec<(String, String)> = run
+        .stages
+        .iter()
+        .map(|(name, seconds)| ((*name).to_owned(), format!("{seconds:.2} s")))
+        .collect();
+    rows.push(("all".to_owned(), run.usage.to_string()));
+    rows
+}

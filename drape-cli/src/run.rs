@@ -1,0 +1,154 @@
+//! One drape from files in memory to figures: the initial deformation, the optimisation, the judge.
+
+use std::time::Instant;
+
+use mesh_core::{Positions, UnitFrame, VertexData};
+use mesh_metrics::{EvaluationConfig, EvaluationInput, Report};
+use neural_drape::network::NetworkMap;
+use neural_drape::{Drape, DrapeInput, Warp, WarpInput};
+
+use crate::initial::deform;
+use crate::input::Pair;
+use crate::progress::{History, Progress};
+use crate::settings::Settings;
+use crate::usage::{Stopwatch, Usage};
+
+/// What a run gave and took.
+pub(crate) struct Run {
+    pub(crate) settings: Settings,
+    /// Where the drape started, in the target's coordinates.
+    pub(crate) initial: Positions,
+    /// The result, likewise.
+    pub(crate) draped: Positions,
+    pub(crate) report: Report,
+    pub(crate) history: History,
+    pub(crate) warnings: Vec<String>,
+    /// Seconds of each stage.
+    pub(crate) stages: Vec<(&'static str, f64)>,
+    pub(crate) usage: Usage,
+    network: Option<NetworkMap>,
+    frame: UnitFrame,
+}
+
+impl Run {
+    /// Drapes the source of `pair` over its target and judges the result.
+    pub(crate) fn new(
+        pair: &Pair,
+        settings: Settings,
+        truth: Option<&Positions>,
+        (watch, warnings): (&Stopwatch, Vec<String>),
+    ) -> anyhow::Result<Self> {
+        let mut clock = StageClock::start();
+        let initial = deform(pair, settings.start)?;
+        clock.lap("initial deformation");
+        let drape = drape(pair, &settings, &initial)?;
+        clock.lap("drape");
+        let report = judge(pair, &drape.positions, truth)?;
+        clock.lap("figures");
+        Ok(Self {
+            frame: UnitFrame::of(pair.target.surface.bounds()),
+            settings,
+            initial,
+            draped: drape.positions,
+            network: drape.network,
+            history: drape.history,
+            report,
+            warnings,
+            stages: clock.laps,
+            usage: watch.read(),
+        })
+    }
+
+    /// Distance of each vertex from another place, in longest sides of the target's box.
+    pub(crate) fn distances_from(&self, truth: &Positions) -> VertexData<f64> {
+        let pairs = self.draped.iter().zip(truth.iter());
+        pairs
+            .map(|(a, b)| (a - b).norm() / self.frame.scale)
+            .collect()
+    }
+
+    /// What the drape did to space.
+    pub(crate) fn warp(&self, pair: &Pair) -> anyhow::Result<Warp> {
+        Ok(Warp::new(WarpInput {
+            triangulation: &pair.source.triangulation,
+            rest: &pair.source.rest,
+            initial: &self.initial,
+            draped: &self.draped,
+            network: self.network.clone(),
+        })?)
+    }
+
+    /// All figures by name: of the result, of time and memory.
+    pub(crate) fn figures(&self) -> Vec<(&'static str, f64)> {
+        let mut figures = self.report.figures();
+        figures.extend(self.usage.figures());
+        figures
+    }
+}
+
+/// Every measure of a shape of the pair's source.
+pub(crate) fn judge(
+    pair: &Pair,
+    draped: &Positions,
+    truth: Option<&Positions>,
+) -> anyhow::Result<Report> {
+    let input = EvaluationInput {
+        mesh: &pair.source.mesh,
+        rest: &pair.source.rest,
+        draped,
+        target: pair.target.surface.as_ref(),
+        landmarks: &pair.landmarks,
+        truth,
+    };
+    Ok(mesh_metrics::evaluate(
+        input,
+        &EvaluationConfig::standard(),
+    )?)
+}
+
+/// What the optimisation gave.
+struct Draped {
+    positions: Positions,
+    network: Option<NetworkMap>,
+    history: History,
+}
+
+fn drape(pair: &Pair, settings: &Settings, initial: &Positions) -> anyhow::Result<Draped> {
+    let input = DrapeInput {
+        triangulation: &pair.source.triangulation,
+        rest: &pair.source.rest,
+        initial,
+        target: pair.target.surface.as_ref(),
+        landmarks: &pair.landmarks,
+    };
+    let mut drape = Drape::new(input, settings.config.clone())?;
+    let mut progress = Progress::start(drape.n_iterations());
+    while let Some(step) = drape.step()? {
+        progress.show(&step);
+    }
+    Ok(Draped {
+        positions: drape.positions(),
+        network: drape.network(),
+        history: progress.finish(),
+    })
+}
+
+/// Seconds between laps.
+struct StageClock {
+    last: Instant,
+    laps: Vec<(&'static str, f64)>,
+}
+
+impl StageClock {
+    fn start() -> Self {
+        Self {
+            last: Instant::now(),
+            laps: Vec::new(),
+        }
+    }
+
+    fn lap(&mut self, name: &'static str) {
+        self.laps.push((name, self.last.elapsed().as_secs_f64()));
+        self.last = Instant::now();
+    }
+}

@@ -1,0 +1,88 @@
+//! Many runs: each in a process of its own, each finished one a row that survives whatever comes after.
+//!
+//! A process a run means that one that crashes takes no other along, and that each counts its own time and memory.
+
+mod manifest;
+mod row;
+mod runner;
+mod summary;
+
+use std::path::{Path, PathBuf};
+
+use anyhow::Context as _;
+use mesh_core::io::write_atomic;
+
+pub(crate) use manifest::Manifest;
+pub(crate) use row::Row;
+pub(crate) use runner::Pool;
+
+/// The preset that stands for the initial deformation alone.
+pub(crate) const INITIAL: &str = "initial";
+
+/// One run to be done.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Task {
+    pub(crate) pair: Pair,
+    pub(crate) method: Method,
+    pub(crate) seed: u64,
+    /// The draped mesh.
+    pub(crate) output: PathBuf,
+    pub(crate) picture: PathBuf,
+}
+
+/// What is draped over what, and what to judge by.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Pair {
+    pub(crate) name: String,
+    pub(crate) source: PathBuf,
+    pub(crate) target: PathBuf,
+    pub(crate) landmarks: Option<PathBuf>,
+    /// Where each vertex belongs.
+    pub(crate) truth: Option<PathBuf>,
+    /// Target to judge against in place of the one that was draped over.
+    pub(crate) judge: Option<PathBuf>,
+}
+
+/// The settings of a run.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) enum Method {
+    Preset(String),
+    /// A TOML file.
+    Config(PathBuf),
+}
+
+impl Method {
+    /// A name for tables and files.
+    pub(crate) fn label(&self) -> String {
+        match self {
+            Self::Preset(name) => name.clone(),
+            Self::Config(path) => stem(path),
+        }
+    }
+}
+
+/// The name of a file without folder and extension.
+pub(crate) fn stem(path: &Path) -> String {
+    path.file_stem()
+        .unwrap_or(path.as_os_str())
+        .to_string_lossy()
+        .into_owned()
+}
+
+/// Runs what is not done yet and writes `results.csv`, `results.json` and `index.html` beside `results.jsonl` in
+/// `folder`; gives the rows of all tasks.
+pub(crate) fn run(tasks: &[Task], folder: &Path, pool: &Pool) -> anyhow::Result<Vec<Row>> {
+    std::fs::create_dir_all(folder)
+        .with_context(|| format!("{}: the folder cannot be made", folder.display()))?;
+    let rows = pool.run(tasks, &folder.join("results.jsonl"))?;
+    write_atomic(folder.join("results.csv"), summary::csv(&rows).as_bytes())?;
+    write_atomic(
+        folder.join("results.json"),
+        serde_json::to_string_pretty(&rows)?.as_bytes(),
+    )?;
+    write_atomic(
+        folder.join("index.html"),
+        summary::html(&rows, folder).as_bytes(),
+    )?;
+    Ok(rows)
+}
