@@ -93,7 +93,7 @@ pub fn fit_affine(pairs: &[PointPair], bounds: BoundsPair, prior: SimilarityPrio
         SimilarityPrior::None => UnitMap::fit(&Moments::of(&unit), 0.0),
         SimilarityPrior::LeaveOneOut => UnitMap::fit(&Moments::of(&unit), best_prior(&unit)),
     };
-    let (matrix, translation) = frames.from_unit(&map);
+    let (matrix, translation) = frames.with_units(&map);
     let residual =
         |p: &PointPair| (matrix * p.source.coords + translation - p.target.coords).norm();
     AffineFit {
@@ -174,7 +174,7 @@ impl Frames {
         pairs.iter().map(unit).collect()
     }
 
-    fn from_unit(&self, map: &UnitMap) -> (Matrix3<f64>, Vector3) {
+    fn with_units(&self, map: &UnitMap) -> (Matrix3<f64>, Vector3) {
         let matrix = map.linear * (self.target_scale / self.source_scale);
         let moved = map.translation * self.target_scale + self.target_center;
         (matrix, moved - matrix * self.source_center)
