@@ -34,7 +34,13 @@ pub fn self_intersections(triangulation: &Triangulation, x: &Positions) -> Vec<[
 
 fn is_intersecting(s: &[Point3; 3], t: &[Point3; 3]) -> bool {
     let pierces = |s: &[Point3; 3], t| (0..3).any(|k| is_piercing(s[k], s[(k + 1) % 3], t));
-    pierces(s, t) || pierces(t, s)
+    is_straddling(s, t) && is_straddling(t, s) && (pierces(s, t) || pierces(t, s))
+}
+
+/// Whether `s` has corners on both sides of the plane of `t`.
+fn is_straddling(s: &[Point3; 3], &[a, b, c]: &[Point3; 3]) -> bool {
+    let sides = s.map(|p| orientation(a, b, c, p));
+    sides.contains(&1) && sides.contains(&-1)
 }
 
 /// Whether the open segment from `p` to `q` crosses the inside of the triangle.
@@ -52,6 +58,9 @@ fn is_piercing(p: Point3, q: Point3, &[a, b, c]: &[Point3; 3]) -> bool {
 
 /// The side of the plane `abc` that `d` is on, exactly: −1, 0 or 1.
 fn orientation(a: Point3, b: Point3, c: Point3, d: Point3) -> i8 {
+    if [a, b, c].contains(&d) {
+        return 0; // neighbours share corners: no need to find this zero in exact arithmetic
+    }
     let [a, b, c, d] = [a, b, c, d].map(|p| Coord3D {
         x: p.x,
         y: p.y,
