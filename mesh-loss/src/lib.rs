@@ -12,6 +12,7 @@
 //! | flipped faces | [`Flip`] | the authors' program |
 //! | folded edges | [`FoldBarrier`] | beyond the paper |
 //! | angle distortion as Eq. 6 measures it | [`Conformal`] | beyond the paper |
+//! | one-rings turned and scaled only | [`LocalShape`] | beyond the paper |
 //! | uneven displacement | [`Smoothness`] | beyond the paper |
 //!
 //! [`SurfaceMatcher::resample`] draws samples and finds closest points; it alone changes what the distance terms see.
@@ -24,6 +25,7 @@ mod flip;
 mod fold_barrier;
 mod gradient;
 mod landmark_distance;
+mod local_shape;
 mod loss;
 mod matching;
 mod normal_agreement;
@@ -38,6 +40,7 @@ pub use corner_angle::CornerAngle;
 pub use flip::Flip;
 pub use fold_barrier::FoldBarrier;
 pub use landmark_distance::LandmarkDistance;
+pub use local_shape::LocalShape;
 pub use loss::Loss;
 pub use matching::{Matches, SamplingConfig, SurfaceMatch, SurfaceMatcher};
 pub use normal_agreement::NormalAgreement;

@@ -6,9 +6,9 @@ use crate::{Loss, Matches, SurfaceMatch};
 
 /// Mean of the largest `share` of the matched distances, both ways.
 ///
-/// `W = Σ over both ways of 1/k Σ of the k largest wₖ |pₖ − qₖ|`, with k = ⌈share · n⌉
+/// `W = Σ over both ways of 1/k Σ of the k largest |pₖ − qₖ|`, with k = ⌈share · n⌉
 ///
-/// Units: those of the coordinates. Q hangs on the Hausdorff distance, which an ear tip decides.
+/// The weights of the pairs do not count: the tip of an ear is seen from its side. Units: those of the coordinates. Q hangs on the Hausdorff distance, which an ear tip decides.
 /// Source: beyond the paper. Off in `paper`.
 pub struct WorstDistance<'a> {
     /// The pairs.
@@ -41,7 +41,7 @@ impl WorstDistance<'_> {
         let mut ranked: Vec<(f64, usize)> = matches
             .iter()
             .enumerate()
-            .map(|(row, pair)| (pair.weight * pair.offset(x).norm(), row))
+            .map(|(row, pair)| (pair.offset(x).norm(), row))
             .collect();
         let farther = |a: &(f64, usize), b: &(f64, usize)| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1));
         ranked.select_nth_unstable_by(k - 1, farther);
@@ -53,7 +53,7 @@ impl WorstDistance<'_> {
             let offset = pair.offset(x);
             let distance = offset.norm();
             if distance > f64::MIN_POSITIVE {
-                pair.scatter(&(offset * (weight * pair.weight / (k as f64 * distance))), grad);
+                pair.scatter(&(offset * (weight / (k as f64 * distance))), grad);
             }
         }
         ranked.iter().map(|(distance, _)| distance).sum::<f64>() / k as f64

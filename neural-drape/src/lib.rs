@@ -1,1 +1,27 @@
-//! Drapes a mesh over a target: progressive-encoding network or preconditioned vertices, one stepper.
+//! Drapes a mesh over a target: the paper's network with progressive positional encoding, or the preconditioned
+//! vertices themselves, behind one stepper.
+//!
+//! | to | call |
+//! |---|---|
+//! | drape | [`Drape::new`], [`Drape::step`], [`Drape::positions`] |
+//! | choose how | [`DrapeConfig`] and its presets |
+//! | do to other points what was done to the source | [`Warp::new`], [`Warp::apply`] |
+
+mod config;
+mod drape;
+mod error;
+pub mod network;
+mod parametrization;
+mod presets;
+mod vertices;
+mod warp;
+
+pub use config::{
+    AngleReference, Descent, DrapeConfig, LearningRate, ParametrizationConfig, Sampling, Stage,
+    Weights,
+};
+pub use drape::{Drape, DrapeInput, StepReport, TermReport};
+pub use error::DrapeError;
+pub use parametrization::Parametrization;
+pub use vertices::{Vertices, VerticesConfig};
+pub use warp::{Warp, WarpError, WarpInput};

@@ -2,10 +2,10 @@
 
 use mesh_core::{
     shapes, Landmark, MeshPoint, Point3, PolygonSoup, Positions, TriangleSoup, Triangulation,
-    Vector3, VertexData, VertexId,
+    UnitFrame, Vector3, VertexData, VertexId,
 };
 use mesh_loss::{
-    AreaKl, Chamfer, Conformal, CornerAngle, Flip, FoldBarrier, LandmarkDistance, Loss, Matches,
+    AreaKl, Chamfer, Conformal, CornerAngle, Flip, FoldBarrier, LandmarkDistance, LocalShape, Loss, Matches,
     NormalAgreement, SamplingConfig, Smoothness, SurfaceMatcher, TriangleQuality, WorstDistance,
 };
 use proptest::prelude::*;
@@ -98,7 +98,7 @@ proptest! {
     fn structural_terms(shape in 0..5usize, seed in 0..10_000u64) {
         let mut s = setup(shape, seed, 0.1);
         let (t, x) = (&s.triangulation, &s.moved);
-        let terms: [&dyn Loss; 7] = [
+        let terms: [&dyn Loss; 8] = [
             &CornerAngle::new(t, &s.rest),
             &AreaKl::new(t, &s.rest),
             &TriangleQuality { triangulation: t, threshold: 0.9 },
@@ -106,6 +106,7 @@ proptest! {
             &FoldBarrier::new(t, &s.rest, 0.95),
             &Conformal::new(t, &s.rest),
             &Smoothness::new(t, &s.rest),
+            &LocalShape::new(t, &s.rest),
         ];
         for term in terms {
             assert_gradient(term, x, &mut s.rng)?;

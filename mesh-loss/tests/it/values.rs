@@ -2,7 +2,7 @@
 
 use mesh_core::{shapes, Point3, Positions, TriangleSoup, Vector3, VertexData};
 use mesh_loss::{
-    AreaKl, Chamfer, Conformal, CornerAngle, Flip, FoldBarrier, Loss, SamplingConfig, Smoothness,
+    AreaKl, Chamfer, Conformal, CornerAngle, Flip, FoldBarrier, LocalShape, Loss, SamplingConfig, Smoothness,
     SurfaceMatcher, TriangleQuality, WorstDistance,
 };
 use proptest::prelude::*;
@@ -20,7 +20,7 @@ fn structural_terms_and_their_gradients_vanish_at_rest() {
     for shape in 0..all_shapes().len() {
         let s = setup(shape, 1, 0.0);
         let t = &s.triangulation;
-        let terms: [&dyn Loss; 7] = [
+        let terms: [&dyn Loss; 8] = [
             &CornerAngle::new(t, &s.rest),
             &AreaKl::new(t, &s.rest),
             &TriangleQuality { triangulation: t, threshold: 0.1 },
@@ -28,6 +28,7 @@ fn structural_terms_and_their_gradients_vanish_at_rest() {
             &FoldBarrier::new(t, &s.rest, 0.3),
             &Conformal::new(t, &s.rest),
             &Smoothness::new(t, &s.rest),
+            &LocalShape::new(t, &s.rest),
         ];
         for (row, term) in terms.into_iter().enumerate() {
             let (value, gradient) = value_and_gradient(term, &s.rest);
@@ -46,11 +47,12 @@ proptest! {
         let rotation = nalgebra::Rotation3::new(Vector3::new(0.3, -0.5, 0.8) * turn);
         let copy = s.moved.map(|p| rotation * Point3::from(p.coords * scale) + Vector3::new(3.0, -2.0, 1.0));
         let t = &s.triangulation;
-        let terms: [&dyn Loss; 4] = [
+        let terms: [&dyn Loss; 5] = [
             &CornerAngle::new(t, &s.rest),
             &AreaKl::new(t, &s.rest),
             &TriangleQuality { triangulation: t, threshold: 0.9 },
             &Conformal::new(t, &s.rest),
+            &LocalShape::new(t, &s.rest),
         ];
         for term in terms {
             let (a, b) = (value_and_gradient(term, &s.moved).0, value_and_gradient(term, &copy).0);

@@ -1,0 +1,287 @@
+//! The stepper: one engine for every parametrisation and every preset.
+
+use mesh_core::{Landmark, Positions, TargetSurface, Triangulation, UnitFrame, Vector3, VertexData};
+use mesh_loss::{
+    AreaKl, Chamfer, Conformal, CornerAngle, Flip, FoldBarrier, LandmarkDistance, LocalShape, Loss, Matches,
+    NormalAgreement, Smoothness, SurfaceMatcher, TriangleQuality, WorstDistance,
+};
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+
+use crate::config::{AngleReference, Descent, DrapeConfig, ParametrizationConfig, Weights};
+use crate::network::{Network, NetworkMap};
+use crate::{DrapeError, Parametrization, Vertices};
+
+/// What is draped over what.
+#[derive(Clone, Copy)]
+pub struct DrapeInput<'a> {
+    /// The source's polygons as triangles.
+    pub triangulation: &'a Triangulation,
+    /// The source as given: its shape is kept.
+    pub rest: &'a Positions,
+    /// Where the drape starts, in the target's coordinates.
+    pub initial: &'a Positions,
+    /// The shape to drape over.
+    pub target: &'a dyn TargetSurface,
+    /// Places that belong together.
+    pub landmarks: &'a [Landmark],
+}
+
+/// One term of the loss in one iteration.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TermReport {
+    /// The term.
+    pub name: &'static str,
+    /// Its value, unweighted.
+    pub value: f64,
+    /// Its weight.
+    pub weight: f64,
+}
+
+/// What one iteration did.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StepReport {
+    /// The iteration, counted from 0.
+    pub iteration: usize,
+    /// How many there are.
+    pub n_iterations: usize,
+    /// Each term before the step.
+    pub terms: Vec<TermReport>,
+    /// Σ weight · value
+    pub total: f64,
+}
+
+/// A drape in progress. Dropping it cancels it; between steps it can be read and its landmarks changed.
+pub struct Drape<'a> {
+    config: DrapeConfig,
+    frame: UnitFrame,
+    parametrization: Box<dyn Parametrization>,
+    landmarks: Vec<Landmark>,
+    matcher: SurfaceMatcher<'a>,
+    structure: Structure<'a>,
+    iteration: usize,
+    n_iterations: usize,
+    gradient: VertexData<Vector3>,
+    rng: ChaCha8Rng,
+}
+
+/// The terms that depend on the mesh alone.
+struct Structure<'a> {
+    corner_angle: CornerAngle<'a>,
+    area_kl: AreaKl<'a>,
+    triangle_quality: TriangleQuality<'a>,
+    flip: Flip<'a>,
+    fold_barrier: FoldBarrier<'a>,
+    conformal: Conformal<'a>,
+    local_shape: LocalShape,
+    smoothness: Smoothness,
+}
+
+impl<'a> Drape<'a> {
+    /// A drape at its start: [`Self::positions`] are the initial ones.
+    ///
+    /// # Errors
+    /// Inputs of different lengths, a mesh without area, a setting out of range.
+    pub fn new(input: DrapeInput<'a>, config: DrapeConfig) -> Result<Self, DrapeError> {
+        check(&input)?;
+        config.check()?;
+        let frame = UnitFrame::of(input.target.bounds());
+        let initial = input.initial.map(|p| frame.to_unit(p));
+        let parametrization: Box<dyn Parametrization> = match &config.parametrization {
+            ParametrizationConfig::Network(network) => {
+                Box::new(Network::new(&initial, network, config.seed)?)
+            }
+            ParametrizationConfig::Vertices(vertices) => {
+                Box::new(Vertices::new(input.triangulation, &initial, vertices)?)
+            }
+        };
+        let mut drape = Self {
+            frame,
+            parametrization,
+            landmarks: Vec::new(),
+            matcher: SurfaceMatcher::new(input.triangulation, &initial, input.target, frame),
+            structure: Structure::new(&input, &initial, &config),
+            iteration: 0,
+            n_iterations: config.stages.iter().map(|s| s.n_iterations).sum(),
+            gradient: VertexData::new(initial.len(), Vector3::zeros()),
+            rng: ChaCha8Rng::seed_from_u64(config.seed),
+            config,
+        };
+        drape.set_landmarks(input.landmarks)?;
+        Ok(drape)
+    }
+
+    /// One iteration; none when the run is over.
+    ///
+    /// # Errors
+    /// The optimisation left the finite numbers.
+    pub fn step(&mut self) -> Result<Option<StepReport>, DrapeError> {
+        if self.iteration >= self.n_iterations {
+            return Ok(None);
+        }
+        let weights = self.config.weights_at(self.iteration);
+        let rate = self.config.learning_rate.at(self.iteration, self.n_iterations);
+        let progress = self.iteration as f64 / self.n_iterations as f64;
+        self.parametrization.set_progress(progress)?;
+
+        let sampling = self.config.sampling.at(self.iteration);
+        let x = self.parametrization.positions();
+        let matches = self.matcher.resample(x, &sampling, &mut self.rng);
+
+        let mut terms = self.add_distance_terms(&matches, &weights);
+        if self.config.descent == Descent::Alternating {
+            self.descend(rate)?;
+        }
+        terms.extend(self.add_structural_terms(&weights));
+        self.descend(rate)?;
+
+        self.iteration += 1;
+        Ok(Some(StepReport {
+            iteration: self.iteration - 1,
+            n_iterations: self.n_iterations,
+            total: terms.iter().map(|t| t.weight * t.value).sum(),
+            terms,
+        }))
+    }
+
+    /// Where the vertices are now, in the target's coordinates.
+    pub fn positions(&self) -> Positions {
+        self.parametrization.positions().map(|p| self.frame.from_unit(p))
+    }
+
+    /// Replaces the landmarks from the next step on.
+    ///
+    /// # Errors
+    /// A landmark names a vertex that is not there; the old landmarks stay.
+    pub fn set_landmarks(&mut self, landmarks: &[Landmark]) -> Result<(), DrapeError> {
+        let n_vertices = self.gradient.len();
+        for (row, landmark) in landmarks.iter().enumerate() {
+            if let Some(v) = landmark.source.vertices.iter().find(|v| v.index() >= n_vertices) {
+                return Err(DrapeError::LandmarkOutOfRange {
+                    landmark: row,
+                    vertex: v.index(),
+                    n_vertices,
+                });
+            }
+        }
+        self.landmarks = landmarks.to_vec();
+        for landmark in &mut self.landmarks {
+            landmark.target = self.frame.to_unit(&landmark.target);
+        }
+        Ok(())
+    }
+
+    /// The network behind the positions, as a map in the target's coordinates; none for explicit vertices.
+    pub fn network(&self) -> Option<NetworkMap> {
+        let network = self.parametrization.network()?;
+        Some(network.from_unit(&self.frame))
+    }
+
+    /// How many iterations are done.
+    pub fn iteration(&self) -> usize {
+        self.iteration
+    }
+
+    /// How many iterations the run has.
+    pub fn n_iterations(&self) -> usize {
+        self.n_iterations
+    }
+
+    fn descend(&mut self, rate: f64) -> Result<(), DrapeError> {
+        self.parametrization.descend(&self.gradient, rate)?;
+        let is_finite = |p: &mesh_core::Point3| p.coords.iter().all(|c| c.is_finite());
+        if !self.parametrization.positions().iter().all(is_finite) {
+            return Err(DrapeError::Diverged {
+                iteration: self.iteration,
+            });
+        }
+        self.gradient.iter_mut().for_each(|g| *g = Vector3::zeros());
+        Ok(())
+    }
+
+    /// Eq. 2 and its companions.
+    fn add_distance_terms(&mut self, matches: &Matches, w: &Weights) -> Vec<TermReport> {
+        let worst = WorstDistance {
+            matches,
+            share: self.config.worst_share,
+        };
+        let terms: [Term<'_>; 4] = [
+            ("chamfer", w.chamfer, &Chamfer(matches)),
+            ("worst distance", w.worst_distance, &worst),
+            ("normals", w.normal_agreement, &NormalAgreement(matches)),
+            ("landmarks", w.landmark, &LandmarkDistance(&self.landmarks)),
+        ];
+        accumulate(&terms, self.parametrization.positions(), &mut self.gradient)
+    }
+
+    /// Eq. 3 and its companions.
+    fn add_structural_terms(&mut self, w: &Weights) -> Vec<TermReport> {
+        let s = &self.structure;
+        let terms: [Term<'_>; 8] = [
+            ("angles", w.corner_angle, &s.corner_angle),
+            ("areas", w.area_kl, &s.area_kl),
+            ("skinny", w.triangle_quality, &s.triangle_quality),
+            ("flips", w.flip, &s.flip),
+            ("folds", w.fold_barrier, &s.fold_barrier),
+            ("conformal", w.conformal, &s.conformal),
+            ("local shape", w.local_shape, &s.local_shape),
+            ("smoothness", w.smoothness, &s.smoothness),
+        ];
+        accumulate(&terms, self.parametrization.positions(), &mut self.gradient)
+    }
+}
+
+type Term<'t> = (&'static str, f64, &'t dyn Loss);
+
+/// Adds every term that counts and reports it.
+fn accumulate(terms: &[Term<'_>], x: &Positions, gradient: &mut VertexData<Vector3>) -> Vec<TermReport> {
+    terms
+        .iter()
+        .filter(|(_, weight, _)| *weight > 0.0)
+        .map(|&(name, weight, loss)| TermReport {
+            name,
+            value: loss.accumulate(x, weight, gradient),
+            weight,
+        })
+        .collect()
+}
+
+impl<'a> Structure<'a> {
+    fn new(input: &DrapeInput<'a>, initial: &Positions, config: &DrapeConfig) -> Self {
+        let t = input.triangulation;
+        let angles = match config.angle_reference {
+            AngleReference::Rest => input.rest,
+            AngleReference::Initial => initial,
+        };
+        Self {
+            corner_angle: CornerAngle::new(t, angles),
+            area_kl: AreaKl::new(t, input.rest),
+            triangle_quality: TriangleQuality {
+                triangulation: t,
+                threshold: config.skinny_threshold,
+            },
+            flip: Flip::new(t, initial),
+            fold_barrier: FoldBarrier::new(t, input.rest, config.fold_limit),
+            conformal: Conformal::new(t, input.rest),
+            local_shape: LocalShape::new(t, input.rest),
+            smoothness: Smoothness::new(t, initial),
+        }
+    }
+}
+
+fn check(input: &DrapeInput<'_>) -> Result<(), DrapeError> {
+    let expected = input.rest.len();
+    if input.initial.len() != expected {
+        return Err(DrapeError::LengthMismatch {
+            what: "the initial shape",
+            found: input.initial.len(),
+            expected,
+        });
+    }
+    let area: f64 = mesh_core::measure::triangle_areas(input.triangulation, input.rest).iter().sum();
+    if area > 0.0 {
+        Ok(())
+    } else {
+        Err(DrapeError::NoArea)
+    }
+}

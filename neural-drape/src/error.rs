@@ -1,0 +1,60 @@
+//! What can go wrong in a drape.
+
+/// A drape that cannot start or go on.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum DrapeError {
+    /// Two inputs that must have one entry per vertex differ in length.
+    #[error("{what} has {found} entries, the mesh {expected} vertices")]
+    LengthMismatch {
+        /// Which input.
+        what: &'static str,
+        /// How many entries it has.
+        found: usize,
+        /// How many vertices there are.
+        expected: usize,
+    },
+    /// The mesh has no triangle with an area.
+    #[error("the source mesh has no face with an area to drape")]
+    NoArea,
+    /// A setting is out of its range.
+    #[error("setting {name} is {value}; it must be {expected}")]
+    Setting {
+        /// The setting.
+        name: &'static str,
+        /// Its value.
+        value: f64,
+        /// What is allowed.
+        expected: &'static str,
+    },
+    /// No preset has this name.
+    #[error("there is no preset '{name}'; there are {known}")]
+    UnknownPreset {
+        /// What was asked for.
+        name: String,
+        /// All names.
+        known: String,
+    },
+    /// The optimisation left the finite numbers.
+    #[error("iteration {iteration} produced a position that is not a finite number; lower the learning rate")]
+    Diverged {
+        /// Which iteration.
+        iteration: usize,
+    },
+    /// A landmark names a vertex that is not there.
+    #[error("landmark {landmark} names vertex {vertex}, but there are {n_vertices}")]
+    LandmarkOutOfRange {
+        /// Row of the landmark.
+        landmark: usize,
+        /// The vertex.
+        vertex: usize,
+        /// How many vertices there are.
+        n_vertices: usize,
+    },
+    /// The preconditioner could not be factored.
+    #[error("the smoothing operator of the mesh could not be factored")]
+    Preconditioner(#[from] mesh_operators::SolveError),
+    /// The network's tensors could not be made.
+    #[error("no memory for the network's tensors; choose a narrower network")]
+    Network(#[from] dfdx::prelude::CpuError),
+}
