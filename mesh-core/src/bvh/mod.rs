@@ -137,18 +137,20 @@ impl TriangleBvh {
         accept: impl Fn(u32) -> bool,
     ) -> Option<SurfacePoint> {
         let mut best: Option<Best> = None;
+        let mut nearest = f64::INFINITY;
         let mut visit = |slot: u32| {
-            let row = self.tree.rows()[slot as usize];
             let at = closest_point_on_triangle(query, &self.corners[slot as usize]);
             let d = at.distance_squared;
-            let is_better = best.as_ref().is_none_or(|b| {
-                d < b.at.distance_squared || (d == b.at.distance_squared && row < b.row)
-            });
+            if d > nearest {
+                return nearest;
+            }
+            let row = self.tree.rows()[slot as usize];
+            let is_better = d < nearest || best.as_ref().is_none_or(|b| row < b.row);
             if is_better && accept(row) {
                 best = Some(Best { row, slot, at });
+                nearest = d;
             }
-            best.as_ref()
-                .map_or(f64::INFINITY, |b| b.at.distance_squared)
+            nearest
         };
 
         let bound = match hint {
