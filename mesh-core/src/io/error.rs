@@ -64,6 +64,9 @@ pub enum ReadProblem {
     /// Not a whole gzip file.
     #[error("cannot be unpacked; is the file complete")]
     Packed(#[source] io::Error),
+    /// Not the JSON document of a glTF file.
+    #[error("not a glTF document: {0}")]
+    Json(String),
     /// There is not one byte.
     #[error("the file is empty")]
     Empty,
@@ -172,7 +175,7 @@ pub enum WriteError {
         /// The source file.
         path: PathBuf,
         /// What it holds.
-        feature: String,
+        feature: &'static str,
         /// What to do about it.
         advice: &'static str,
     },

@@ -7,7 +7,7 @@ use super::contents::{Contents, Parsed};
 use super::error::{Fault, ReadError, ReadProblem, WriteError};
 use super::format::Format;
 use super::save::{check_encodes, check_finite, encode, packed_as_named, write_atomic};
-use super::{gzip, obj, off, ply, stl, xyz};
+use super::{gltf, gzip, obj, off, ply, stl, xyz};
 use crate::{Point3, PolygonSoup, Positions, Vector3};
 
 /// A mesh file in memory, with everything needed to write it back with new positions.
@@ -78,7 +78,7 @@ pub fn read_points(path: impl AsRef<Path>) -> Result<PointSet, ReadError> {
 }
 
 impl MeshFile {
-    /// Reads the content of a file called `path`; no file is opened.
+    /// Reads the content of a file called `path`; no file is opened but the buffers that a glTF document names.
     ///
     /// # Errors
     /// As [`read_mesh`].
@@ -131,6 +131,7 @@ impl MeshFile {
             Format::Ply => ply::vertex_normals(&self.bytes, &self.contents),
             Format::Xyz => xyz::vertex_normals(&self.bytes),
             Format::Stl => None,
+            Format::Gltf | Format::Glb => gltf::vertex_normals(&self.bytes, &self.path),
         }?;
         for n in &mut normals {
             *n = n.try_normalize(f64::MIN_POSITIVE).unwrap_or_default();
@@ -157,8 +158,24 @@ impl MeshFile {
     pub fn check_writable(&self, path: impl AsRef<Path>) -> Result<(), WriteError> {
         let path = path.as_ref();
         match self.output_format(path) {
-            format if format == self.format => Ok(()),
+            format if format == self.format => self.check_places(),
             format => check_encodes(path, format),
+        }
+    }
+
+    /// Whether every vertex has a place of its own in the file.
+    fn check_places(&self) -> Result<(), WriteError> {
+        if !matches!(self.format, Format::Gltf | Format::Glb) {
+            return Ok(());
+        }
+        let found = gltf::find_unmovable(&self.bytes, &self.path);
+        match found.map_err(|fault| fault.of(&self.path))? {
+            None => Ok(()),
+            Some((feature, advice)) => Err(WriteError::Unsupported {
+                path: self.path.clone(),
+                feature,
+                advice,
+            }),
         }
     }
 
@@ -206,6 +223,11 @@ impl MeshFile {
             Format::Ply => ply::rewrite(bytes, contents, rest, moved),
             Format::Stl => stl::rewrite(bytes, rest, moved),
             Format::Xyz => xyz::rewrite(bytes, rest, moved),
+            Format::Gltf | Format::Glb if moved == rest.positions => Ok(bytes.clone()),
+            Format::Gltf | Format::Glb => {
+                self.check_places()?;
+                gltf::rewrite(bytes, &self.path, moved)
+            }
         };
         Ok(rewritten.map_err(|fault| fault.of(&self.path))?)
     }
@@ -259,6 +281,7 @@ fn parse(bytes: &[u8], path: &Path) -> Result<(Format, Parsed), Fault> {
         Format::Ply => ply::read(bytes),
         Format::Stl => stl::read(bytes),
         Format::Xyz => xyz::read(bytes),
+        Format::Gltf | Format::Glb => gltf::read(bytes, path),
     }?;
     if parsed.soup.positions.is_empty() {
         return Err(Fault::whole(ReadProblem::NoVertices { format: name }));

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::text::{number, Cursor};
-use super::{gzip, off, stl, xyz};
+use super::{gltf, gzip, off, stl, xyz};
 
 /// A mesh format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -19,6 +19,10 @@ pub enum Format {
     Stl,
     /// A list of points, one a line.
     Xyz,
+    /// glTF 2.0 as a JSON document.
+    Gltf,
+    /// glTF 2.0 as one binary file.
+    Glb,
 }
 
 impl Format {
@@ -30,6 +34,8 @@ impl Format {
             Self::Ply => "PLY",
             Self::Stl => "STL",
             Self::Xyz => "XYZ",
+            Self::Gltf => "glTF",
+            Self::Glb => "GLB",
         }
     }
 
@@ -43,6 +49,8 @@ impl Format {
             "off" | "coff" | "noff" | "cnoff" | "stoff" => Self::Off,
             "ply" => Self::Ply,
             "stl" => Self::Stl,
+            "gltf" => Self::Gltf,
+            "glb" => Self::Glb,
             "xyz" | "xyzn" | "pts" | "asc" | "csv" | "txt" => Self::Xyz,
             _ => return None,
         })
@@ -62,7 +70,13 @@ impl Format {
         if stl::is_binary(bytes) || stl::is_text(bytes) {
             return Some(Self::Stl);
         }
+        if gltf::is_glb(bytes) {
+            return Some(Self::Glb);
+        }
         let first = Cursor::new(bytes).word()?;
+        if first.text.starts_with(b"{") {
+            return Some(Self::Gltf);
+        }
         off::keyword_prefix(first.text).map(|_| Self::Off)
     }
 

@@ -17,6 +17,7 @@ mod contents;
 mod error;
 mod file;
 mod format;
+mod gltf;
 mod gzip;
 mod obj;
 mod off;

@@ -43,7 +43,8 @@ fn each_point<'a>(
     let mut is_first = true;
     while cursor.left() > 0 {
         let columns = columns(&mut cursor);
-        if !columns.is_empty() && !(is_first && is_heading(&columns)) {
+        let is_skipped = columns.is_empty() || is_first && is_heading(&columns);
+        if !is_skipped {
             visit(&cursor, &columns)?;
         }
         is_first &= columns.is_empty();

@@ -1,0 +1,247 @@
+//! Numbers of a glTF accessor, wherever they stand: packed, interleaved, normalised, sparse.
+
+use std::collections::BTreeMap;
+
+use gltf::json::accessor::{ComponentType, Type};
+use gltf::json::validation::Checked;
+use gltf::json::{buffer, Index};
+
+use super::container::Container;
+use crate::io::error::{Fault, Place, ReadProblem};
+
+/// Where the elements of an accessor stand.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Layout {
+    pub(super) count: usize,
+    component: ComponentType,
+    is_normalized: bool,
+    n_components: usize,
+    /// Buffer, first byte and bytes from one element to the next; none where all are zero.
+    dense: Option<(usize, usize, usize)>,
+    /// Elements that stand elsewhere: buffer and byte.
+    sparse: BTreeMap<usize, (usize, usize)>,
+}
+
+fn fault(accessor: usize, problem: ReadProblem) -> Fault {
+    let (element, row) = ("accessor".to_owned(), accessor);
+    Fault {
+        place: Place::Row { element, row },
+        problem,
+    }
+}
+
+fn broken(accessor: usize, expected: &'static str) -> Fault {
+    fault(accessor, ReadProblem::EndsEarly { expected })
+}
+
+impl Layout {
+    /// The layout of accessor number `k`, all of it inside its buffers.
+    pub(super) fn of(container: &Container<'_>, k: usize) -> Result<Self, Fault> {
+        let expected = "an accessor of numbers";
+        let accessor = container
+            .root
+            .accessors
+            .get(k)
+            .ok_or_else(|| broken(k, expected))?;
+        let (Checked::Valid(component), Checked::Valid(kind)) =
+            (accessor.component_type, accessor.type_)
+        else {
+            return Err(broken(k, expected));
+        };
+        let mut layout = Self {
+            count: check_count(container, k, accessor.count.0)?,
+            component: component.0,
+            is_normalized: accessor.normalized,
+            n_components: n_components(kind),
+            dense: None,
+            sparse: BTreeMap::new(),
+        };
+        if let Some(view) = accessor.buffer_view {
+            let offset = accessor.byte_offset.map_or(0, |o| o.0);
+            let place = place(container, view, offset, layout.count, layout.size());
+            layout.dense = Some(place.ok_or_else(|| broken(k, "the data of an accessor"))?);
+        }
+        if let Some(sparse) = &accessor.sparse {
+            layout.sparse = layout
+                .sparse_places(container, sparse)
+                .ok_or_else(|| broken(k, "the data of a sparse accessor"))?;
+        }
+        Ok(layout)
+    }
+
+    fn sparse_places(
+        &self,
+        container: &Container<'_>,
+        sparse: &gltf::json::accessor::sparse::Sparse,
+    ) -> Option<BTreeMap<usize, (usize, usize)>> {
+        let n = usize::try_from(sparse.count.0)
+            .ok()
+            .filter(|&n| n <= self.count)?;
+        let Checked::Valid(component) = sparse.indices.component_type else {
+            return None;
+        };
+        let size = component_size(component.0);
+        let (indices, values) = (&sparse.indices, &sparse.values);
+        let at = place(
+            container,
+            indices.buffer_view,
+            indices.byte_offset.0,
+            n,
+            size,
+        )?;
+        let to = place(
+            container,
+            values.buffer_view,
+            values.byte_offset.0,
+            n,
+            self.size(),
+        )?;
+        let mut places = BTreeMap::new();
+        for k in 0..n {
+            let raw = container.buffers[at.0]
+                .get(at.1 + k * at.2..)?
+                .get(..size)?;
+            let index = decode(component.0, false, raw) as usize;
+            if index >= self.count {
+                return None;
+            }
+            places.insert(index, (to.0, to.1 + k * to.2));
+        }
+        Some(places)
+    }
+
+    /// Bytes of one element.
+    fn size(&self) -> usize {
+        self.n_components * component_size(self.component)
+    }
+
+    pub(super) fn has_components(&self, n: usize) -> bool {
+        self.n_components == n
+    }
+
+    /// Whether elements are plain 32-bit floats.
+    pub(super) fn is_float(&self) -> bool {
+        self.component == ComponentType::F32
+    }
+
+    /// Where element `row` stands: buffer and byte; none where it is an implied zero.
+    pub(super) fn slot(&self, row: usize) -> Option<(usize, usize)> {
+        let sparse = self.sparse.get(&row).copied();
+        sparse.or_else(|| {
+            self.dense
+                .map(|(buffer, start, stride)| (buffer, start + row * stride))
+        })
+    }
+
+    /// The first `N` components of element `row`.
+    pub(super) fn get<const N: usize>(&self, container: &Container<'_>, row: usize) -> [f64; N] {
+        let mut values = [0.0; N];
+        let Some((buffer, at)) = self.slot(row) else {
+            return values;
+        };
+        let raw = &container.buffers[buffer][at..at + self.size()];
+        let size = component_size(self.component);
+        for (value, raw) in values.iter_mut().zip(raw.chunks_exact(size)) {
+            *value = decode(self.component, self.is_normalized, raw);
+        }
+        values
+    }
+
+    /// Puts `values` where element `row` stands; whole-number components are rounded.
+    pub(super) fn put(&self, buffers: &mut [Vec<u8>], row: usize, values: &[f64]) {
+        let Some((buffer, at)) = self.slot(row) else {
+            return;
+        };
+        let size = component_size(self.component);
+        for (k, &value) in values.iter().enumerate() {
+            let start = at + k * size;
+            encode(
+                self.component,
+                value,
+                &mut buffers[buffer][start..start + size],
+            );
+        }
+    }
+}
+
+/// A count that the data of the whole file could hold, even if this accessor only implies zeros.
+fn check_count(container: &Container<'_>, accessor: usize, count: u64) -> Result<usize, Fault> {
+    let bytes = container.n_bytes();
+    if count > bytes as u64 {
+        let element = "elements".to_owned();
+        return Err(fault(
+            accessor,
+            ReadProblem::Oversized {
+                element,
+                count,
+                bytes,
+            },
+        ));
+    }
+    Ok(count as usize)
+}
+
+/// Buffer, first byte and stride of `count` elements of `size` bytes, if all of them are there.
+fn place(
+    container: &Container<'_>,
+    view: Index<buffer::View>,
+    offset: u64,
+    count: usize,
+    size: usize,
+) -> Option<(usize, usize, usize)> {
+    let view = container.root.buffer_views.get(view.value())?;
+    let buffer = view.buffer.value();
+    let length = usize::try_from(view.byte_length.0).ok()?;
+    let in_view = usize::try_from(offset).ok()?;
+    let stride = view.byte_stride.map_or(size, |s| s.0);
+    let used = match count {
+        0 => 0,
+        _ => (count - 1).checked_mul(stride)?.checked_add(size)?,
+    };
+    let start = usize::try_from(view.byte_offset.map_or(0, |o| o.0)).ok()?;
+    let is_inside = in_view.checked_add(used)? <= length
+        && start.checked_add(length)? <= container.buffers.get(buffer)?.len();
+    // Elements that overlap each other could not be written.
+    (is_inside && stride >= size).then_some((buffer, start + in_view, stride))
+}
+
+fn n_components(kind: Type) -> usize {
+    kind.multiplicity()
+}
+
+fn component_size(component: ComponentType) -> usize {
+    component.size()
+}
+
+fn decode(component: ComponentType, is_normalized: bool, raw: &[u8]) -> f64 {
+    let mut bytes = [0; 4];
+    bytes[..raw.len()].copy_from_slice(raw);
+    let bits = u32::from_le_bytes(bytes);
+    let (value, unit) = match component {
+        ComponentType::I8 => (f64::from(bits as u8 as i8), 127.0),
+        ComponentType::U8 => (f64::from(bits as u8), 255.0),
+        ComponentType::I16 => (f64::from(bits as u16 as i16), 32767.0),
+        ComponentType::U16 => (f64::from(bits as u16), 65535.0),
+        ComponentType::U32 => return f64::from(bits),
+        ComponentType::F32 => return f64::from(f32::from_bits(bits)),
+    };
+    if is_normalized {
+        (value / unit).max(-1.0)
+    } else {
+        value
+    }
+}
+
+/// A float, or a fraction of the largest whole number (as normals are quantised).
+fn encode(component: ComponentType, value: f64, out: &mut [u8]) {
+    let bits = match component {
+        ComponentType::I8 => (value * 127.0).round() as i8 as u8 as u32,
+        ComponentType::U8 => (value * 255.0).round() as u8 as u32,
+        ComponentType::I16 => (value * 32767.0).round() as i16 as u16 as u32,
+        ComponentType::U16 => (value * 65535.0).round() as u16 as u32,
+        ComponentType::U32 => value as u32,
+        ComponentType::F32 => (value as f32).to_bits(),
+    };
+    let n = out.len();
+    out.copy_from_slice(&bits.to_le_bytes()[..n]);
+}

@@ -1,0 +1,106 @@
+//! Where values stand in the text of a JSON document, so that single ones can be replaced. The text is known to be
+//! valid JSON: these functions only find their way in it.
+
+use std::ops::Range;
+
+/// The values of the array that `array` spans.
+pub(super) fn items(json: &[u8], array: Range<usize>) -> Vec<Range<usize>> {
+    let mut spans = Vec::new();
+    let mut at = skip_blanks(json, array.start + 1);
+    while at + 1 < array.end {
+        let end = value_end(json, at);
+        spans.push(at..end);
+        at = skip_blanks(json, skip_blanks(json, end) + 1);
+    }
+    spans
+}
+
+/// The value under `key` of the object that `object` spans.
+pub(super) fn member(json: &[u8], object: Range<usize>, key: &str) -> Option<Range<usize>> {
+    let mut at = skip_blanks(json, object.start + 1);
+    while at + 1 < object.end {
+        let key_end = value_end(json, at);
+        let value = skip_blanks(json, skip_blanks(json, key_end) + 1);
+        let end = value_end(json, value);
+        if json.get(at + 1..key_end - 1) == Some(key.as_bytes()) {
+            return Some(value..end);
+        }
+        at = skip_blanks(json, skip_blanks(json, end) + 1);
+    }
+    None
+}
+
+/// The document's own value.
+pub(super) fn root(json: &[u8]) -> Range<usize> {
+    let start = skip_blanks(json, 0);
+    start..value_end(json, start)
+}
+
+fn skip_blanks(json: &[u8], at: usize) -> usize {
+    let rest = json.get(at..).unwrap_or_default();
+    at + rest.iter().take_while(|b| b.is_ascii_whitespace()).count()
+}
+
+/// The end of the value that starts at `at`; always beyond `at`.
+fn value_end(json: &[u8], at: usize) -> usize {
+    let mut depth = 0usize;
+    let mut k = at;
+    while let Some(&byte) = json.get(k) {
+        match byte {
+            b'"' => k = string_end(json, k),
+            b'[' | b'{' => {
+                depth += 1;
+                k += 1;
+            }
+            b']' | b'}' if depth > 0 => {
+                depth -= 1;
+                k += 1;
+            }
+            b',' | b':' | b']' | b'}' | b' ' | b'\t' | b'\r' | b'\n' if depth == 0 => break,
+            _ => {
+                k += 1;
+                continue;
+            }
+        }
+        if depth == 0 {
+            break;
+        }
+    }
+    k.max(at + 1)
+}
+
+fn string_end(json: &[u8], at: usize) -> usize {
+    let mut k = at + 1;
+    while let Some(&byte) = json.get(k) {
+        match byte {
+            b'"' => return k + 1,
+            b'\\' => k += 2,
+            _ => k += 1,
+        }
+    }
+    json.len()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn values_are_found_among_strings_and_brackets() {
+        let json =
+            br#" { "a,\"]": [1, {"b": "}"}, [2,3 ] , "x" ], "c" :-1.5e3 , "d":{"min" : [ ] } } "#;
+        let text = |span: Range<usize>| std::str::from_utf8(&json[span]).unwrap().to_owned();
+        let all = root(json);
+        assert_eq!(text(member(json, all.clone(), "c").unwrap()), "-1.5e3");
+        let d = member(json, all.clone(), "d").unwrap();
+        let min = member(json, d, "min").unwrap();
+        assert_eq!(
+            (text(min.clone()), items(json, min).len()),
+            ("[ ]".to_owned(), 0)
+        );
+        assert_eq!(member(json, all.clone(), "b"), None);
+        let a = member(json, all, r#"a,\"]"#).unwrap();
+        let values: Vec<String> = items(json, a).into_iter().map(text).collect();
+        assert_eq!(values, ["1", r#"{"b": "}"}"#, "[2,3 ]", r#""x""#]);
+    }
+}

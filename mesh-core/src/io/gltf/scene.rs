@@ -1,0 +1,360 @@
+//! The scene of a glTF file as one soup: each mesh where its node puts it.
+
+use std::collections::BTreeMap;
+use std::ops::Range;
+
+use gltf::json::mesh::{Mode, Primitive, Semantic};
+use gltf::json::scene::Node;
+use gltf::json::validation::Checked;
+use nalgebra::{Matrix4, Quaternion, UnitQuaternion};
+
+use super::accessor::Layout;
+use super::container::{unsupported, Container};
+use crate::io::contents::{Contents, NamedFaces};
+use crate::io::error::{Fault, Place, ReadProblem};
+use crate::{Point3, PolygonSoup, Vector3};
+
+/// The positions of one accessor in one node, and all that moves with them.
+pub(super) struct Block {
+    node: Option<usize>,
+    /// Accessors that read these very numbers.
+    pub(super) accessors: Vec<usize>,
+    pub(super) positions: Layout,
+    pub(super) normals: Option<Layout>,
+    pub(super) tangents: Option<Layout>,
+    /// From the mesh's own frame into the scene; none where they are the same.
+    pub(super) to_scene: Option<Matrix4<f64>>,
+    /// The vertices, as rows of the soup.
+    pub(super) rows: Range<usize>,
+}
+
+/// All blocks and what they look like together.
+pub(super) struct Scene {
+    pub(super) blocks: Vec<Block>,
+    pub(super) soup: PolygonSoup,
+    pub(super) contents: Contents,
+}
+
+impl Scene {
+    pub(super) fn read(container: &Container<'_>) -> Result<Self, Fault> {
+        let mut scene = Self {
+            blocks: Vec::new(),
+            soup: PolygonSoup::default(),
+            contents: Contents::default(),
+        };
+        let mut names = Names::default();
+        for (node, mesh, to_scene) in shown_meshes(container) {
+            let first_face = scene.soup.faces.len();
+            let Some(shown) = container.root.meshes.get(mesh) else {
+                return Err(missing("mesh", mesh));
+            };
+            for primitive in &shown.primitives {
+                let first = scene.soup.faces.len();
+                scene.add_primitive(container, primitive, node, to_scene)?;
+                let material = primitive.material.and_then(|m| {
+                    let name = container.root.materials.get(m.value())?.name.clone();
+                    Some((
+                        m.value(),
+                        name.unwrap_or_else(|| format!("material {}", m.value())),
+                    ))
+                });
+                if let Some((row, name)) = material {
+                    names
+                        .materials
+                        .entry(row)
+                        .or_insert((name, Vec::new()))
+                        .1
+                        .push(first..scene.soup.faces.len());
+                }
+            }
+            let name = shown.name.clone().unwrap_or_else(|| format!("mesh {mesh}"));
+            let faces = first_face..scene.soup.faces.len();
+            names
+                .meshes
+                .entry(mesh)
+                .or_insert((name, Vec::new()))
+                .1
+                .push(faces);
+        }
+        scene.contents.objects = Names::list(names.meshes);
+        scene.contents.materials = Names::list(names.materials);
+        Ok(scene)
+    }
+
+    fn add_primitive(
+        &mut self,
+        container: &Container<'_>,
+        primitive: &Primitive,
+        node: Option<usize>,
+        to_scene: Option<Matrix4<f64>>,
+    ) -> Result<(), Fault> {
+        let attribute = |semantic| {
+            primitive
+                .attributes
+                .get(&Checked::Valid(semantic))
+                .map(|i| i.value())
+        };
+        let Some(accessor) = attribute(Semantic::Positions) else {
+            return Ok(());
+        };
+        let positions = Layout::of(container, accessor)?;
+        let known = self
+            .blocks
+            .iter()
+            .rposition(|b| b.node == node && b.positions == positions);
+        let block = match known {
+            Some(block) => block,
+            None => self.add_block(container, node, positions, to_scene)?,
+        };
+        let vector = |semantic, n| -> Result<Option<Layout>, Fault> {
+            let layout = attribute(semantic)
+                .map(|a| Layout::of(container, a))
+                .transpose()?;
+            Ok(layout.filter(|l| l.has_components(n) && l.count == self.blocks[block].rows.len()))
+        };
+        let (normals, tangents) = (
+            vector(Semantic::Normals, 3)?,
+            vector(Semantic::Tangents, 4)?,
+        );
+        let (has_uvs, has_colors) = (
+            attribute(Semantic::TexCoords(0)),
+            attribute(Semantic::Colors(0)),
+        );
+
+        let block = &mut self.blocks[block];
+        let rows = block.rows.clone();
+        if !block.accessors.contains(&accessor) {
+            block.accessors.push(accessor);
+        }
+        if known.is_none() {
+            let count = |is_there: bool| if is_there { rows.len() } else { 0 };
+            self.contents.n_uvs += count(has_uvs.is_some());
+            self.contents.n_colors += count(has_colors.is_some());
+            self.contents.n_normals += count(normals.is_some());
+        }
+        block.normals = block.normals.take().or(normals);
+        block.tangents = block.tangents.take().or(tangents);
+        self.add_faces(container, primitive, rows)
+    }
+
+    fn add_block(
+        &mut self,
+        container: &Container<'_>,
+        node: Option<usize>,
+        positions: Layout,
+        to_scene: Option<Matrix4<f64>>,
+    ) -> Result<usize, Fault> {
+        if !positions.has_components(3) {
+            return Err(unsupported(
+                "a POSITION of other than three components".to_owned(),
+                "export it again",
+            ));
+        }
+        self.check_size(container, positions.count)?;
+        let first = self.soup.positions.len();
+        for row in 0..positions.count {
+            let local = Point3::from(positions.get::<3>(container, row));
+            let p = to_scene.map_or(local, |m| m.transform_point(&local));
+            if !p.iter().all(|c| c.is_finite()) {
+                return Err(Fault {
+                    place: Place::Row {
+                        element: "vertex".to_owned(),
+                        row: first + row,
+                    },
+                    problem: ReadProblem::NotFinite {
+                        text: format!("{} {} {}", p.x, p.y, p.z),
+                    },
+                });
+            }
+            self.soup.positions.push(p);
+        }
+        self.blocks.push(Block {
+            node,
+            accessors: Vec::new(),
+            positions,
+            normals: None,
+            tangents: None,
+            to_scene,
+            rows: first..self.soup.positions.len(),
+        });
+        Ok(self.blocks.len() - 1)
+    }
+
+    /// A file that shows one mesh many times could ask for any size.
+    fn check_size(&self, container: &Container<'_>, n_more: usize) -> Result<(), Fault> {
+        let most = container.n_bytes().saturating_mul(4).max(1 << 22);
+        if self.soup.positions.len() + self.soup.faces.len() + n_more <= most {
+            return Ok(());
+        }
+        let feature = "a scene that shows the same meshes so many times".to_owned();
+        Err(unsupported(feature, "save only the mesh that is meant"))
+    }
+
+    fn add_faces(
+        &mut self,
+        container: &Container<'_>,
+        primitive: &Primitive,
+        rows: Range<usize>,
+    ) -> Result<(), Fault> {
+        let mode = match primitive.mode {
+            Checked::Valid(mode) => mode,
+            Checked::Invalid => {
+                return Err(unsupported(
+                    "a primitive of unknown mode".to_owned(),
+                    "export it again",
+                ))
+            }
+        };
+        let corners = match primitive.indices {
+            Some(accessor) => indices(container, accessor.value(), &rows)?,
+            None => (rows.start as u32..rows.end as u32).collect(),
+        };
+        self.check_size(container, corners.len())?;
+        let faces = &mut self.soup.faces;
+        match mode {
+            Mode::Triangles => faces.extend(corners.chunks_exact(3).map(<[u32]>::to_vec)),
+            Mode::TriangleStrip => {
+                faces.extend(corners.windows(3).enumerate().map(|(k, t)| match k % 2 {
+                    0 => t.to_vec(),
+                    _ => vec![t[1], t[0], t[2]],
+                }))
+            }
+            Mode::TriangleFan => {
+                let around = corners.get(1..).unwrap_or_default();
+                faces.extend(
+                    around
+                        .windows(2)
+                        .map(|side| vec![corners[0], side[0], side[1]]),
+                );
+            }
+            Mode::Points | Mode::Lines | Mode::LineLoop | Mode::LineStrip => {
+                self.contents.n_lines_and_points += 1
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Names by row in the document, with their faces.
+#[derive(Default)]
+struct Names {
+    meshes: BTreeMap<usize, (String, Vec<Range<usize>>)>,
+    materials: BTreeMap<usize, (String, Vec<Range<usize>>)>,
+}
+
+impl Names {
+    fn list(named: BTreeMap<usize, (String, Vec<Range<usize>>)>) -> Vec<NamedFaces> {
+        named
+            .into_values()
+            .map(|(name, faces)| NamedFaces { name, faces })
+            .collect()
+    }
+}
+
+fn missing(element: &str, row: usize) -> Fault {
+    let expected = "an element that another names";
+    Fault {
+        place: Place::Row {
+            element: element.to_owned(),
+            row,
+        },
+        problem: ReadProblem::EndsEarly { expected },
+    }
+}
+
+fn indices(
+    container: &Container<'_>,
+    accessor: usize,
+    rows: &Range<usize>,
+) -> Result<Vec<u32>, Fault> {
+    let layout = Layout::of(container, accessor)?;
+    let mut corners = Vec::with_capacity(layout.count);
+    for k in 0..layout.count {
+        let [index] = layout.get(container, k);
+        if !(index >= 0.0 && index < rows.len() as f64) {
+            return Err(Fault {
+                place: Place::Row {
+                    element: "accessor".to_owned(),
+                    row: accessor,
+                },
+                problem: ReadProblem::IndexOutOfRange {
+                    index: index as i64,
+                    n_vertices: rows.len(),
+                    first: 0,
+                },
+            });
+        }
+        corners.push((rows.start + index as usize) as u32);
+    }
+    Ok(corners)
+}
+
+type ShownMesh = (Option<usize>, usize, Option<Matrix4<f64>>);
+
+/// Node, mesh and transform of every mesh that the scene shows, in the order of the nodes; every mesh of a file that
+/// shows none. A skinned mesh ignores its node's transform, as the format says.
+fn shown_meshes(container: &Container<'_>) -> Vec<ShownMesh> {
+    let nodes = &container.root.nodes;
+    let transforms = scene_transforms(container);
+    let shown: Vec<ShownMesh> = (0..nodes.len())
+        .filter_map(|k| {
+            let (mesh, transform) = (nodes[k].mesh?, transforms[k]?);
+            let is_fixed = nodes[k].skin.is_some() || transform == Matrix4::identity();
+            Some((Some(k), mesh.value(), (!is_fixed).then_some(transform)))
+        })
+        .collect();
+    if shown.is_empty() {
+        return (0..container.root.meshes.len())
+            .map(|mesh| (None, mesh, None))
+            .collect();
+    }
+    shown
+}
+
+/// From each node's frame into the scene; none for nodes that the scene does not hold.
+fn scene_transforms(container: &Container<'_>) -> Vec<Option<Matrix4<f64>>> {
+    let root = &container.root;
+    let scene = root.scene.map_or(0, |s| s.value());
+    let tops: Vec<usize> = match root.scenes.get(scene) {
+        Some(scene) => scene.nodes.iter().map(|n| n.value()).collect(),
+        None => (0..root.nodes.len())
+            .filter(|&k| !is_child(&root.nodes, k))
+            .collect(),
+    };
+    let mut transforms = vec![None; root.nodes.len()];
+    let mut open: Vec<(usize, Matrix4<f64>)> =
+        tops.into_iter().map(|k| (k, Matrix4::identity())).collect();
+    while let Some((k, above)) = open.pop() {
+        let Some(node) = root.nodes.get(k).filter(|_| transforms[k].is_none()) else {
+            continue;
+        };
+        let transform = above * local_transform(node);
+        transforms[k] = Some(transform);
+        let children = node.children.iter().flatten();
+        open.extend(children.map(|child| (child.value(), transform)));
+    }
+    transforms
+}
+
+fn is_child(nodes: &[Node], k: usize) -> bool {
+    nodes
+        .iter()
+        .flat_map(|n| n.children.iter().flatten())
+        .any(|child| child.value() == k)
+}
+
+fn local_transform(node: &Node) -> Matrix4<f64> {
+    if let Some(matrix) = node.matrix {
+        return Matrix4::from_column_slice(&matrix.map(f64::from));
+    }
+    let translation = Vector3::from(node.translation.unwrap_or_default().map(f64::from));
+    let scale = Vector3::from(node.scale.unwrap_or([1.0; 3]).map(f64::from));
+    let turn = match node.rotation {
+        None => Matrix4::identity(),
+        Some(rotation) => {
+            let [x, y, z, w] = rotation.0.map(f64::from);
+            UnitQuaternion::from_quaternion(Quaternion::new(w, x, y, z)).to_homogeneous()
+        }
+    };
+    Matrix4::new_translation(&translation) * turn * Matrix4::new_nonuniform_scaling(&scale)
+}
