@@ -12,6 +12,18 @@
 //! where positions and normals are: order, arity, texture coordinates, groups, materials, comments, line ends and
 //! statements that no reader here knows survive because nothing touches them. Coordinates that did not change keep
 //! their very text.
+//!
+//! | format | read | changed when written back |
+//! |---|---|---|
+//! | OBJ | polygons of any arity, negative indices, continued lines | `v`, `vn` |
+//! | PLY | ascii and binary in both orders, any elements and properties, strips | `x y z`, `nx ny nz` of the vertices |
+//! | OFF | OFF, COFF, NOFF, STOFF and their combinations, as text | coordinates, normals |
+//! | STL | text and binary; equal corners become one vertex | corners and normals of the triangles that moved |
+//! | glTF, GLB | the scene's meshes where their nodes put them; packed, interleaved, normalised and sparse data | POSITION, NORMAL, TANGENT, and the bounds of POSITION |
+//! | XYZ | points and perhaps normals, between blanks, commas or semicolons | the first three columns |
+//!
+//! The format is told by content first, by extension second, and any file may be packed with gzip. OBJ, OFF and PLY can
+//! be written from any other format; [`MeshFile::lost_in`] tells what such a conversion drops.
 
 mod contents;
 mod error;
