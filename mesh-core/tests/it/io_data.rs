@@ -24,7 +24,7 @@ fn collect(folder: &Path, found: &mut Vec<PathBuf>) {
     for path in entries {
         if path.is_dir() {
             collect(&path, found);
-        } else if Format::of_extension(&path).is_some() {
+        } else if Format::of_extension(&path).is_some_and(|f| f != Format::Xyz) {
             found.push(path);
         }
     }
