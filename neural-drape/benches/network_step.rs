@@ -32,7 +32,9 @@ fn step(c: &mut Criterion) {
             ("paper", NetworkConfig::paper()),
         ] {
             let mut network = Network::new(&x, &config, 0).expect("presets are valid");
-            network.set_progress(1.0);
+            network
+                .set_progress(1.0)
+                .expect("a network is always ready");
             group.bench_function(BenchmarkId::new(name, n), |b| {
                 b.iter(|| network.descend(black_box(&gradient), 1e-6));
             });

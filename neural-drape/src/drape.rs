@@ -174,7 +174,7 @@ impl<'a> Drape<'a> {
     /// The network behind the positions, as a map in the target's coordinates; none for explicit vertices.
     pub fn network(&self) -> Option<NetworkMap> {
         let network = self.parametrization.network()?;
-        Some(network.from_unit(&self.frame))
+        Some(network.outside(&self.frame))
     }
 
     /// How many iterations are done.

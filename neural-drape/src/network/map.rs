@@ -53,9 +53,8 @@ impl NetworkMap {
             .collect()
     }
 
-    /// The same map where the shape it was made for has been brought from its coordinates into those of `frame`:
-    /// with `frame.from_unit` on both sides.
-    pub(crate) fn from_unit(self, frame: &UnitFrame) -> Self {
+    /// The same map in the coordinates outside `frame`, where this one is in those inside: `frame⁻¹ ∘ map ∘ frame`.
+    pub(crate) fn outside(self, frame: &UnitFrame) -> Self {
         Self {
             frame: UnitFrame {
                 center: frame.from_unit(&self.frame.center),
@@ -70,7 +69,7 @@ impl NetworkMap {
         let fits = |layer: &Layer| {
             !layer.bias.is_empty()
                 && !layer.weight.is_empty()
-                && layer.weight.len() % layer.bias.len() == 0
+                && layer.weight.len().is_multiple_of(layer.bias.len())
         };
         let (Some(first), Some(last)) = (self.layers.first(), self.layers.last()) else {
             return false;

@@ -39,7 +39,7 @@ fn network_warp(config: &NetworkConfig) -> (Warp, Positions, Positions) {
     let initial = rest.map(|p| p + Vector3::new(0.0, 0.2 * p.x, 5.0));
     let frame = UnitFrame::of(Aabb::of(&initial));
     let mut network = Network::new(&initial.map(|p| frame.to_unit(p)), config, 0).unwrap();
-    network.set_progress(1.0);
+    network.set_progress(1.0).unwrap();
     let gradient = VertexData::from_iter(rest.iter().map(|p| p.coords * p.z));
     for _ in 0..10 {
         network.descend(&gradient, 1e-3).unwrap();
@@ -50,7 +50,7 @@ fn network_warp(config: &NetworkConfig) -> (Warp, Positions, Positions) {
         rest: &rest,
         initial: &initial,
         draped: &draped,
-        network: Some(network.network().unwrap().from_unit(&frame)),
+        network: Some(network.network().unwrap().outside(&frame)),
     });
     (warp.unwrap(), rest, draped)
 }
