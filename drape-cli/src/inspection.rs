@@ -133,77 +133,79 @@ fn fan_size(mesh: &HalfedgeMesh, v: mesh_core::VertexId) -> usize {
 
 impl fmt::Display for Inspection {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let row = |f: &mut fmt::Formatter<'_>, name: &str, value: String| {
-            writeln!(f, "{name:<22}{value}")
-        };
-        let count = |n: usize| {
-            if n == 0 {
-                "none".to_owned()
-            } else {
-                n.to_string()
-            }
-        };
-        row(f, "format", self.format.to_owned())?;
-        row(
-            f,
-            "vertices",
-            format!(
-                "{}{}",
-                self.vertices,
-                noted(self.unused_vertices, "that no face uses")
+        let rows = [self.elements(), self.surface(), self.extras()];
+        rows.iter()
+            .flatten()
+            .try_for_each(|(name, value)| writeln!(f, "{name:<22}{value}"))
+    }
+}
+
+type TextRow = (&'static str, String);
+
+impl Inspection {
+    fn elements(&self) -> Vec<TextRow> {
+        let unused = noted(self.unused_vertices, "that no face uses");
+        vec![
+            ("format", self.format.to_owned()),
+            ("vertices", format!("{}{unused}", self.vertices)),
+            ("faces", faces_in_words(self)),
+            (
+                "box",
+                format!("{} to {}", corner(self.box_min), corner(self.box_max)),
             ),
-        )?;
-        row(f, "faces", faces_in_words(self))?;
+        ]
+    }
+
+    fn surface(&self) -> Vec<TextRow> {
         if self.faces == 0 {
-            row(
-                f,
+            return vec![(
                 "",
                 "a point cloud: it can be a target, not a source".to_owned(),
-            )?;
-        } else {
-            row(
-                f,
-                "skinny triangles",
-                format!(
-                    "{} with Q_f below 0.1",
-                    count(self.triangles_below_quality_0_1)
-                ),
-            )?;
-            row(f, "pieces", self.pieces.to_string())?;
-            row(f, "boundary loops", count(self.boundary_loops))?;
-            row(f, "non-manifold edges", count(self.non_manifold_edges))?;
-            row(
-                f,
-                "genus",
-                self.genus
-                    .map_or("not defined: no manifold".to_owned(), |g| g.to_string()),
-            )?;
-            row(f, "area", format!("{:.6}", self.area))?;
+            )];
         }
-        row(
-            f,
-            "box",
-            format!("{} to {}", corner(self.box_min), corner(self.box_max)),
-        )?;
-        row(f, "texture coordinates", count(self.texture_coordinates))?;
-        row(f, "normals", count(self.normals))?;
-        row(f, "smoothing groups", count(self.smoothing_groups))?;
-        for (name, list) in [
-            ("objects", &self.objects),
-            ("groups", &self.groups),
-            ("materials", &self.materials),
-        ] {
-            row(f, name, names(list))?;
-        }
-        row(
-            f,
-            "names other files",
-            if self.references.is_empty() {
-                "none".into()
-            } else {
-                self.references.join(", ")
-            },
-        )
+        let skinny = format!(
+            "{} with Q_f below 0.1",
+            count(self.triangles_below_quality_0_1)
+        );
+        let genus = self
+            .genus
+            .map_or("not defined: no manifold".to_owned(), |g| g.to_string());
+        vec![
+            ("area", format!("{:.6}", self.area)),
+            ("skinny triangles", skinny),
+            ("pieces", self.pieces.to_string()),
+            ("boundary loops", count(self.boundary_loops)),
+            ("non-manifold edges", count(self.non_manifold_edges)),
+            ("genus", genus),
+        ]
+    }
+
+    fn extras(&self) -> Vec<TextRow> {
+        let references = self.references.join(", ");
+        vec![
+            ("texture coordinates", count(self.texture_coordinates)),
+            ("normals", count(self.normals)),
+            ("smoothing groups", count(self.smoothing_groups)),
+            ("objects", names(&self.objects)),
+            ("groups", names(&self.groups)),
+            ("materials", names(&self.materials)),
+            (
+                "names other files",
+                if references.is_empty() {
+                    "none".to_owned()
+                } else {
+                    references
+                },
+            ),
+        ]
+    }
+}
+
+fn count(n: usize) -> String {
+    if n == 0 {
+        "none".to_owned()
+    } else {
+        n.to_string()
     }
 }
 

@@ -39,16 +39,16 @@ pub(crate) fn check_writable(path: &Path) -> anyhow::Result<()> {
     }
 }
 
-/// Refuses a mesh whose extension names no format that can be written.
+/// Refuses a mesh whose extension names no format; whether a source can be written in it is known once that is read.
 pub(crate) fn check_mesh(path: &Path) -> anyhow::Result<()> {
     check_writable(path)?;
-    match path.extension() {
-        Some(_) if Format::of_extension(path).is_some() => Ok(()),
-        _ => bail!(
-            "{}: no mesh format with this extension can be written; use .obj, .off or .ply",
+    if Format::of_extension(path).is_none() {
+        bail!(
+            "{}: the extension names no mesh format; use for example .obj or .ply",
             path.display()
-        ),
+        );
     }
+    Ok(())
 }
 
 /// Refuses an output that would overwrite one of the files it is made from.

@@ -103,7 +103,8 @@ fn terms(step: &StepReport) -> String {
     let terms = step
         .terms
         .iter()
-        .map(|t| format!("{} {:.3}", t.name, t.value * t.weight));
+        // Adding zero turns −0 into 0.
+        .map(|t| format!("{} {:.3}", t.name, t.value * t.weight + 0.0));
     format!(
         "loss {:.4}: {}",
         step.total,

@@ -1,1 +1,8 @@
-//! End-to-end tests.
+//! End-to-end tests: the command as a user runs it, files in and files out.
+
+mod bad_input;
+mod commands;
+mod real_pair;
+mod suite;
+mod support;
+mod transfer;

@@ -25,6 +25,7 @@ pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
     check_distinct(&args.output, &[&args.warp, &args.mesh])?;
     let warp = Warp::load(&args.warp)?;
     let file = io::read_mesh(&args.mesh)?;
+    file.check_writable(&args.output)?;
     warn(&Vec::from_iter(file.lost_in(&args.output)));
     let moved = Positions::from(warp.apply(&file.soup().positions));
     file.write(&args.output, &moved)?;

@@ -51,6 +51,7 @@ pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
         check_writable(path)?;
     }
     let pair = Pair::read(&args.source, &args.target, args.landmarks.as_deref())?;
+    pair.file.check_writable(&args.output)?;
     let truth = args
         .truth
         .as_deref()

@@ -49,7 +49,11 @@ const FEATURES: [Feature; 10] = [
 ];
 
 /// Places without a bump that are marked too.
-const MARKED: [(&str, [f64; 3]); 4] = [
+const MARKED: [(&str, [f64; 3]); 8] = [
+    ("right nape", [-0.6, -0.5, -0.65]),
+    ("left nape", [0.6, -0.5, -0.65]),
+    ("right jaw", [-0.8, -0.65, 0.1]),
+    ("left jaw", [0.8, -0.65, 0.1]),
     ("crown", [0.0, 1.0, -0.05]),
     ("neck", [0.0, -1.0, -0.1]),
     ("right temple", [-1.0, 0.1, 0.0]),
@@ -108,7 +112,7 @@ pub(super) fn on_source(direction: &Vector3) -> Point3 {
 pub(super) fn on_target(direction: &Vector3) -> Point3 {
     let p = direction.component_mul(&Vector3::new(1.05, 0.95, 1.12)) * radius(direction, 1);
     let taper = 1.0 - 0.12 * p.y;
-    let (sin, cos) = (0.25 * p.y).sin_cos();
+    let (sin, cos) = (0.12 * p.y).sin_cos();
     let twisted = Vector3::new(
         taper * (cos * p.x + sin * p.z),
         p.y,

@@ -18,6 +18,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use anyhow::{anyhow, ensure, Context as _};
+use mesh_core::io::Format;
 use neural_drape::DrapeConfig;
 use serde::Deserialize;
 
@@ -103,11 +104,7 @@ impl Manifest {
             let pair_folder = folder.join(&pair.name);
             fs::create_dir_all(&pair_folder)
                 .with_context(|| format!("{}: the folder cannot be made", pair_folder.display()))?;
-            let extension = pair
-                .source
-                .extension()
-                .and_then(|e| e.to_str())
-                .unwrap_or("obj");
+            let extension = extension_like(&pair.source);
             for method in &self.methods {
                 // The initial deformation draws nothing at random: one seed tells all.
                 let is_initial = *method == Method::Preset(INITIAL.to_owned());
@@ -130,6 +127,15 @@ impl Manifest {
         }
         Ok(tasks)
     }
+}
+
+/// The source's extension, so that its format is kept; `obj` where that names none.
+fn extension_like(source: &Path) -> &str {
+    let extension = source.extension().and_then(|e| e.to_str());
+    extension
+        .filter(|_| Format::of_extension(source).is_some())
+        .filter(|e| *e != "gz")
+        .unwrap_or("obj")
 }
 
 /// Appends, where `Path::with_extension` would cut a name with a dot.
