@@ -134,31 +134,34 @@ impl SpdSolver {
     fn solve_lower<T: SolveValue>(&self, y: &mut [T], tail: &mut [T]) {
         for block in &self.structure.blocks {
             let rows = self.structure.tail_rows(block);
-            let width = block.columns.len();
-            if width == 1 {
-                let (diagonal, column) = self
-                    .columns(block, rows.len())
-                    .next()
-                    .expect("a block has a column");
-                let pivot = y[block.columns.start] * (1.0 / diagonal[0]);
+            let columns = self.columns(block, rows.len());
+            if let ([diagonal], [column]) = (columns.triangle(0), columns.panel::<1>(0)) {
+                let pivot = y[block.columns.start] * (1.0 / diagonal);
                 y[block.columns.start] = pivot;
                 for (&row, &l) in rows.iter().zip(column) {
                     y[row as usize] -= pivot * l;
                 }
                 continue;
             }
-            let sums = &mut tail[..rows.len()];
-            sums.fill(T::default());
             let head = &mut y[block.columns.clone()];
-            for (k, (triangle, column)) in self.columns(block, rows.len()).enumerate() {
-                let pivot = head[k] * (1.0 / triangle[k]);
-                head[k] = pivot;
+            for k in 0..head.len() {
+                let triangle = columns.triangle(k);
+                head[k] = head[k] * (1.0 / triangle[k]);
+                let pivot = head[k];
                 for (value, &l) in head[k + 1..].iter_mut().zip(&triangle[k + 1..]) {
                     *value -= pivot * l;
                 }
-                for (sum, &l) in sums.iter_mut().zip(column) {
-                    *sum += pivot * l;
-                }
+            }
+
+            let sums = &mut tail[..rows.len()];
+            sums.fill(T::default());
+            let mut k = 0;
+            while k + PANEL <= head.len() {
+                add_products(sums, &head[k..], columns.panel::<PANEL>(k));
+                k += PANEL;
+            }
+            for k in k..head.len() {
+                add_products(sums, &head[k..], columns.panel::<1>(k));
             }
             for (&row, &sum) in rows.iter().zip(&*sums) {
                 y[row as usize] -= sum;
@@ -170,17 +173,33 @@ impl SpdSolver {
     fn solve_upper<T: SolveValue>(&self, y: &mut [T], tail: &mut [T]) {
         for block in self.structure.blocks.iter().rev() {
             let rows = self.structure.tail_rows(block);
+            let columns = self.columns(block, rows.len());
+            if let ([diagonal], [column]) = (columns.triangle(0), columns.panel::<1>(0)) {
+                let mut value = y[block.columns.start];
+                for (&row, &l) in rows.iter().zip(column) {
+                    value -= y[row as usize] * l;
+                }
+                y[block.columns.start] = value * (1.0 / diagonal);
+                continue;
+            }
             let below = &mut tail[..rows.len()];
             for (value, &row) in below.iter_mut().zip(rows) {
                 *value = y[row as usize];
             }
+
             let head = &mut y[block.columns.clone()];
-            for (k, (triangle, column)) in self.columns(block, rows.len()).enumerate().rev() {
+            let mut k = 0;
+            while k + PANEL <= head.len() {
+                subtract_dots(&mut head[k..], below, columns.panel::<PANEL>(k));
+                k += PANEL;
+            }
+            for k in k..head.len() {
+                subtract_dots(&mut head[k..], below, columns.panel::<1>(k));
+            }
+            for k in (0..head.len()).rev() {
+                let triangle = columns.triangle(k);
                 let mut value = head[k];
                 for (&known, &l) in head[k + 1..].iter().zip(&triangle[k + 1..]) {
-                    value -= known * l;
-                }
-                for (&known, &l) in below.iter().zip(column) {
                     value -= known * l;
                 }
                 head[k] = value * (1.0 / triangle[k]);
@@ -188,18 +207,67 @@ impl SpdSolver {
         }
     }
 
-    /// The columns of a block, each as its part in the square triangle and its part below.
-    fn columns<'a>(
-        &'a self,
-        block: &Block,
-        n_tail: usize,
-    ) -> impl ExactSizeIterator<Item = (&'a [f64], &'a [f64])> + DoubleEndedIterator + 'a {
+    fn columns(&self, block: &Block, n_tail: usize) -> Columns<'_> {
         let width = block.columns.len();
         let height = width + n_tail;
-        let values = &self.values[block.first_value..][..width * height];
-        values
-            .chunks_exact(height)
-            .map(move |column| column.split_at(width))
+        Columns {
+            values: &self.values[block.first_value..][..width * height],
+            width,
+            height,
+        }
+    }
+}
+
+/// How many columns of a block are walked side by side: so many sums stay in registers.
+const PANEL: usize = 4;
+
+/// The columns of a block.
+struct Columns<'a> {
+    values: &'a [f64],
+    width: usize,
+    height: usize,
+}
+
+impl<'a> Columns<'a> {
+    /// The part of column `k` in the square triangle, from the top of the square.
+    fn triangle(&self, k: usize) -> &'a [f64] {
+        &self.values[k * self.height..][..self.width]
+    }
+
+    /// The parts of columns `k`, `k + 1`, … below the square.
+    fn panel<const N: usize>(&self, k: usize) -> [&'a [f64]; N] {
+        std::array::from_fn(|i| &self.values[(k + i) * self.height..][self.width..self.height])
+    }
+}
+
+/// `sums += Σ_k pivots_k column_k`
+fn add_products<T: SolveValue, const N: usize>(sums: &mut [T], pivots: &[T], columns: [&[f64]; N]) {
+    let columns = columns.map(|column| &column[..sums.len()]);
+    let pivots: [T; N] = std::array::from_fn(|k| pivots[k]);
+    for (i, sum) in sums.iter_mut().enumerate() {
+        let mut value = *sum;
+        for k in 0..N {
+            value += pivots[k] * columns[k][i];
+        }
+        *sum = value;
+    }
+}
+
+/// `heads_k −= column_k · known`
+fn subtract_dots<T: SolveValue, const N: usize>(
+    heads: &mut [T],
+    known: &[T],
+    columns: [&[f64]; N],
+) {
+    let columns = columns.map(|column| &column[..known.len()]);
+    let mut dots = [T::default(); N];
+    for (i, &known) in known.iter().enumerate() {
+        for k in 0..N {
+            dots[k] += known * columns[k][i];
+        }
+    }
+    for (head, dot) in heads.iter_mut().zip(dots) {
+        *head -= dot;
     }
 }
 
