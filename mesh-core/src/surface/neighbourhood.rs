@@ -8,8 +8,10 @@ use rayon::prelude::*;
 use super::point_cloud::PointTree;
 use crate::{Point3, Vector3};
 
-/// Neighbours that make up a surrounding. Fewer follow noise, more cut corners.
+/// Neighbours that make up a surrounding.
 const K: usize = 24;
+/// The nearest of them, that make up a plane. Fewer follow noise, more cut corners.
+const N_IN_PLANE: usize = 16;
 /// Neighbours that are kept for propagation.
 pub(super) const N_KEPT: usize = 8;
 /// No neighbour.
@@ -44,14 +46,21 @@ pub(super) fn neighbourhoods(
     points: &[Point3],
     normals: Option<&[Vector3]>,
 ) -> Vec<Neighbourhood> {
-    let all = (0..points.len()).into_par_iter().with_min_len(64);
-    all.map(|row| {
-        let mut neighbours = tree.nearest_rows(&points[row], K + 1);
-        neighbours.retain(|&n| n as usize != row);
-        neighbours.truncate(K);
-        neighbourhood(points, row, &neighbours, normals.map(|n| n[row]))
-    })
-    .collect()
+    // In the order of the tree, where one search finds in the cache what the last one left there.
+    let by_slot: Vec<Neighbourhood> = tree
+        .rows()
+        .par_iter()
+        .with_min_len(64)
+        .map(|&row| {
+            let mut neighbours = tree.nearest_rows(&points[row as usize], K + 1);
+            neighbours.retain(|&n| n != row);
+            neighbours.truncate(K);
+            let given = normals.map(|n| n[row as usize]);
+            neighbourhood(points, row as usize, &neighbours, given)
+        })
+        .collect();
+    let slots = (0..points.len() as u32).map(|row| tree.slot(row) as usize);
+    slots.map(|slot| by_slot[slot].clone()).collect()
 }
 
 /// Whether the surface ends at each point: a wide gap, and others with one beside it (after Bendels et al. 2006).
@@ -75,7 +84,7 @@ fn neighbourhood(
         .collect();
     let normal = given
         .filter(|n| *n != Vector3::zeros())
-        .unwrap_or_else(|| plane_normal(&offsets));
+        .unwrap_or_else(|| plane_normal(&offsets[..offsets.len().min(N_IN_PLANE)]));
     let mut nearest = [NONE; N_KEPT];
     for (kept, &n) in nearest.iter_mut().zip(neighbours) {
         *kept = n;

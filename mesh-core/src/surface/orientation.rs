@@ -16,9 +16,10 @@ use crate::{Point3, Vector3};
 
 /// No neighbour across a side.
 const NONE: u32 = u32::MAX;
-/// Rays for all patches together, and at least for each.
-const N_RAYS: usize = 1 << 13;
-const N_RAYS_PER_PATCH: usize = 32;
+/// Rays to each side, for all patches together, and the fewest and most for each.
+const N_RAYS: usize = 1 << 17;
+const FEWEST_RAYS: usize = 8;
+const MOST_RAYS: usize = 1 << 12;
 /// Rays start this far off the surface, in diagonals of its box.
 const LIFT: f64 = 1e-7;
 /// Shares of a patch's rays by which one side must win: to be believed, and to overrule a file whose faces agree.
@@ -27,6 +28,8 @@ const OVERRULING: f64 = 0.2;
 /// Share of the area that must be decided for normals to be trusted, and share of edges that may disagree.
 const DECIDED: f64 = 0.9;
 const DISAGREEING: f64 = 0.01;
+/// Share of the shared sides that must run against each other for a file to be believed.
+const AGREEING: f64 = 0.95;
 
 /// Which triangles turn the other way than their corners say, and whether the result can be trusted.
 pub(super) struct Orientation {
@@ -46,7 +49,8 @@ impl Orientation {
     pub(super) fn new(weld: &Weld, bvh: &TriangleBvh) -> Self {
         let neighbours = neighbours(weld);
         let (n_agreeing, n_shared) = agreement(&neighbours);
-        let file_agrees = n_agreeing == n_shared && n_shared >= weld.triangles.len();
+        let file_agrees =
+            n_shared >= weld.triangles.len() && n_agreeing as f64 >= AGREEING * n_shared as f64;
         let mut is_flipped = vec![false; weld.triangles.len()];
         let patches = flood(weld, &neighbours, &mut is_flipped);
         let n_conflicts = conflicts(&neighbours, &is_flipped);
@@ -57,7 +61,10 @@ impl Orientation {
         let total: f64 = areas.iter().sum();
         let verdicts: Vec<(f64, f64)> = patches
             .par_iter()
-            .map(|patch| verdict(bvh, patch, &areas, total, &is_flipped))
+            .map(|patch| {
+                let n = (N_RAYS / patches.len()).clamp(FEWEST_RAYS, MOST_RAYS);
+                verdict(bvh, patch, &areas, n, &is_flipped)
+            })
             .collect();
 
         let mut decided = 0.0;
@@ -111,7 +118,7 @@ fn agreement(neighbours: &[[Neighbour; 3]]) -> (usize, usize) {
     (shared().filter(|n| n.agrees).count(), shared().count())
 }
 
-/// Patches connected by shared edges, lowest triangle first, turned alike with that one.
+/// Patches connected by shared edges, lowest triangle first, turned alike, as most of each are in the file.
 fn flood(weld: &Weld, neighbours: &[[Neighbour; 3]], is_flipped: &mut [bool]) -> Vec<Vec<u32>> {
     let mut is_seen: Vec<bool> = (0u32..)
         .zip(&weld.originals)
@@ -133,9 +140,18 @@ fn flood(weld: &Weld, neighbours: &[[Neighbour; 3]], is_flipped: &mut [bool]) ->
                 }
             }
         }
+        keep_most(&patch, is_flipped);
         patches.push(patch);
     }
     patches
+}
+
+/// Turns a patch so that most of it is as in the file.
+fn keep_most(patch: &[u32], is_flipped: &mut [bool]) {
+    let n_flipped = patch.iter().filter(|&&t| is_flipped[t as usize]).count();
+    if 2 * n_flipped > patch.len() {
+        patch.iter().for_each(|&t| is_flipped[t as usize] ^= true);
+    }
 }
 
 /// Shared sides whose triangles cannot be turned alike: a Möbius band has some.
@@ -154,7 +170,7 @@ fn verdict(
     bvh: &TriangleBvh,
     patch: &[u32],
     areas: &[f64],
-    total: f64,
+    n: usize,
     is_flipped: &[bool],
 ) -> (f64, f64) {
     let mut cumulative = Vec::with_capacity(patch.len());
@@ -166,7 +182,6 @@ fn verdict(
     if area <= 0.0 {
         return (0.0, 0.0);
     }
-    let n = N_RAYS_PER_PATCH.max((N_RAYS as f64 * area / total) as usize);
     let lift = LIFT * bvh.bounds().diagonal();
     let votes = (0..n).into_par_iter().map(|k| {
         let at = area * (k as f64 + 0.5) / n as f64;

@@ -9,7 +9,7 @@ use crate::{Aabb, Point3, TopologyError, Vector3};
 
 /// A target made of points, with normals that are given or estimated.
 ///
-/// Normals come from planes through 24 neighbours where none are given, and are turned outwards as far as the cloud
+/// Normals come from planes through 16 neighbours where none are given, and are turned outwards as far as the cloud
 /// tells (see [`TargetSurface::normal_sign`]). The closest *point* jumps from one point to the next: distances below
 /// the spacing of the cloud mean nothing.
 ///
@@ -159,6 +159,16 @@ impl PointTree {
             .map(|&row| points[row as usize])
             .collect();
         Self { tree, points }
+    }
+
+    /// The row of each point, in an order in which neighbours are close.
+    pub(super) fn rows(&self) -> &[u32] {
+        self.tree.rows()
+    }
+
+    /// The place of a row in that order.
+    pub(super) fn slot(&self, row: u32) -> u32 {
+        self.tree.slot(row)
     }
 
     /// The nearest point, the lowest row among equals, and its squared distance.

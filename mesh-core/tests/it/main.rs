@@ -11,4 +11,5 @@ mod io_stl;
 mod io_support;
 mod io_xyz;
 mod point_cloud;
+mod target_variants;
 mod triangle_soup;
