@@ -13,7 +13,9 @@ fn rng(seed: u64) -> ChaCha8Rng {
 }
 
 fn scattered(soup: mesh_core::PolygonSoup, n: usize) -> Vec<Point3> {
-    let samples = TriangleSoup::new(soup).unwrap().sample(n, &mut rng(7));
+    let samples = TriangleSoup::new(soup)
+        .expect("the shape has faces")
+        .sample(n, &mut rng(7));
     samples.into_iter().map(|s| s.point).collect()
 }
 

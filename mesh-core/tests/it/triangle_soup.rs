@@ -36,7 +36,7 @@ fn outward_share(target: &TriangleSoup) -> f64 {
 }
 
 fn target(soup: PolygonSoup) -> TriangleSoup {
-    TriangleSoup::new(soup).unwrap()
+    TriangleSoup::new(soup).expect("the shape has faces")
 }
 
 #[test]
