@@ -40,7 +40,7 @@ impl SimilarConfig {
             bending_length: 0.03,
             landmark_weight: 30.0,
             max_steps: 40,
-            min_motion: 1e-4,
+            min_motion: 5e-4,
         }
     }
 }

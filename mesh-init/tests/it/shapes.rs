@@ -22,7 +22,7 @@ pub(crate) fn all() -> Vec<Shape> {
 }
 
 pub(crate) fn shape(name: &'static str, soup: PolygonSoup) -> Shape {
-    let (mesh, rest) = soup.into_halfedge().unwrap();
+    let (mesh, rest) = soup.into_halfedge().expect("shapes are meshes");
     let triangulation = Triangulation::new(&mesh, &rest);
     Shape {
         name,
