@@ -53,7 +53,13 @@ impl Loss for AreaKl<'_> {
         let logarithm = around.map(|a| a.ln());
 
         let mut sum = self.entropy;
-        for ((t, p), &area) in self.triangulation.triangles().iter().zip(&self.shares).zip(&areas) {
+        for ((t, p), &area) in self
+            .triangulation
+            .triangles()
+            .iter()
+            .zip(&self.shares)
+            .zip(&areas)
+        {
             let total: f64 = p.iter().sum();
             sum -= total * area.ln();
             // ∂/∂â_f of −p log â_f + p log Σ â, summed over the three one-rings that hold f.

@@ -32,7 +32,9 @@ const THINNEST: f64 = 1e-6;
 impl<'a> Conformal<'a> {
     /// The energy against the shape `rest`.
     pub fn new(triangulation: &'a Triangulation, rest: &Positions) -> Self {
-        let total: f64 = mesh_core::measure::triangle_areas(triangulation, rest).iter().sum();
+        let total: f64 = mesh_core::measure::triangle_areas(triangulation, rest)
+            .iter()
+            .sum();
         Self {
             triangulation,
             faces: triangulation
@@ -48,7 +50,10 @@ fn rest_face([a, b, c]: [Point3; 3], total: f64) -> RestFace {
     let doubled = sides[0].cross(&sides[1]).norm();
     let longest = sides.iter().map(Vector3::norm_squared).fold(0.0, f64::max);
     if doubled <= THINNEST * longest || total <= 0.0 {
-        return RestFace { cotangents: [0.0; 3], share: 0.0 };
+        return RestFace {
+            cotangents: [0.0; 3],
+            share: 0.0,
+        };
     }
     let cotangent = |k: usize| -sides[(k + 1) % 3].dot(&sides[(k + 2) % 3]) / doubled;
     RestFace {

@@ -24,7 +24,13 @@ impl<'a> CornerAngle<'a> {
             triangulation,
             reference: triangulation
                 .corners(reference)
-                .map(|[a, b, c]| [corner_angle(a, b, c), corner_angle(b, c, a), corner_angle(c, a, b)])
+                .map(|[a, b, c]| {
+                    [
+                        corner_angle(a, b, c),
+                        corner_angle(b, c, a),
+                        corner_angle(c, a, b),
+                    ]
+                })
                 .collect(),
         }
     }

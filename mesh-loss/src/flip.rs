@@ -22,7 +22,10 @@ impl<'a> Flip<'a> {
     pub fn new(triangulation: &'a Triangulation, reference: &Positions) -> Self {
         Self {
             triangulation,
-            normals: triangulation.corners(reference).map(triangle_normal).collect(),
+            normals: triangulation
+                .corners(reference)
+                .map(triangle_normal)
+                .collect(),
         }
     }
 }
@@ -37,7 +40,10 @@ impl Loss for Flip<'_> {
                 continue;
             };
             sum += 1.0 - n.dot(&m);
-            for (&v, g) in t.iter().zip(pull_back_normal(corners, &(m * (-weight * share)))) {
+            for (&v, g) in t
+                .iter()
+                .zip(pull_back_normal(corners, &(m * (-weight * share))))
+            {
                 grad[v] += g;
             }
         }

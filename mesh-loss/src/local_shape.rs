@@ -128,12 +128,21 @@ fn larger_eigenvectors(mut a: Matrix3<f64>) -> (Vector3, Vector3) {
     }
     let smallest = (0..3).fold(0, |s, k| if a[(k, k)] < a[(s, s)] { k } else { s });
     let (k, l) = ((smallest + 1) % 3, (smallest + 2) % 3);
-    let (large, small) = if a[(k, k)] >= a[(l, l)] { (k, l) } else { (l, k) };
+    let (large, small) = if a[(k, k)] >= a[(l, l)] {
+        (k, l)
+    } else {
+        (l, k)
+    };
     (v.column(large).into(), v.column(small).into())
 }
 
 /// `a ← Jᵀ a J`, `v ← v J` for a rotation J in the plane (p, q).
-fn rotate(a: &mut Matrix3<f64>, v: &mut Matrix3<f64>, (p, q): (usize, usize), (cos, sin): (f64, f64)) {
+fn rotate(
+    a: &mut Matrix3<f64>,
+    v: &mut Matrix3<f64>,
+    (p, q): (usize, usize),
+    (cos, sin): (f64, f64),
+) {
     for k in 0..3 {
         let (kp, kq) = (a[(k, p)], a[(k, q)]);
         a[(k, p)] = cos * kp - sin * kq;

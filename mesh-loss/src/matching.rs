@@ -1,7 +1,7 @@
 //! Random places on both surfaces and their closest points on the other: what the distance terms look at.
 
 use mesh_core::{
-    Location, NormalSign, Point3, Positions, TargetSurface, Triangulation, TriangleBvh, UnitFrame,
+    Location, NormalSign, Point3, Positions, TargetSurface, TriangleBvh, Triangulation, UnitFrame,
     Vector3, VertexId,
 };
 use rand::{Rng, RngCore};
@@ -120,7 +120,8 @@ impl Side<'_> {
             .iter()
             .map(|&(t, w)| {
                 let [a, b, c] = self.triangulation.triangles()[t].map(|v| x[v].coords);
-                self.frame.from_unit(&Point3::from(a * w[0] + b * w[1] + c * w[2]))
+                self.frame
+                    .from_unit(&Point3::from(a * w[0] + b * w[1] + c * w[2]))
             })
             .collect();
         let hits = self.target.closest_points(&points);
@@ -133,7 +134,10 @@ impl Side<'_> {
 
     fn to_mesh(&self, bvh: &TriangleBvh, rng: &mut dyn RngCore) -> Vec<SurfaceMatch> {
         let samples = self.target.sample(self.config.n_samples, rng);
-        let points: Vec<Point3> = samples.iter().map(|s| self.frame.to_unit(&s.point)).collect();
+        let points: Vec<Point3> = samples
+            .iter()
+            .map(|s| self.frame.to_unit(&s.point))
+            .collect();
         let hits = bvh.closest_points(&points);
         samples
             .par_iter()
@@ -198,7 +202,9 @@ fn sample_mesh(
                 rng.random_range(0..triangulation.len())
             } else {
                 let a = rng.random::<f64>() * total;
-                cumulative.partition_point(|&c| c <= a).min(triangulation.len() - 1)
+                cumulative
+                    .partition_point(|&c| c <= a)
+                    .min(triangulation.len() - 1)
             };
             (t, random_barycentric(rng))
         })

@@ -57,7 +57,8 @@ impl Loss for Smoothness {
         }
         let share = self.inverse_edge_squared / x.len().max(1) as f64;
         for &[a, b] in &self.edges {
-            let g = (unevenness[a] * self.inverse_degree[a] - unevenness[b] * self.inverse_degree[b])
+            let g = (unevenness[a] * self.inverse_degree[a]
+                - unevenness[b] * self.inverse_degree[b])
                 * (2.0 * weight * share);
             grad[a] += g;
             grad[b] -= g;

@@ -47,10 +47,6 @@ fn quality_gradient([a, b, c]: [mesh_core::Point3; 3]) -> [Vector3; 3] {
     };
     let edges = (b - a).norm_squared() + (c - b).norm_squared() + (a - c).norm_squared();
     let scale = 4.0 * 3f64.sqrt() / edges;
-    let by_edges = [
-        (a - b) + (a - c),
-        (b - c) + (b - a),
-        (c - a) + (c - b),
-    ];
+    let by_edges = [(a - b) + (a - c), (b - c) + (b - a), (c - a) + (c - b)];
     [0, 1, 2].map(|k| (area.corners[k] - by_edges[k] * (2.0 * area.area / edges)) * scale)
 }

@@ -59,7 +59,11 @@ impl LearningRate {
     pub fn at(&self, iteration: usize, n_iterations: usize) -> f64 {
         let rise = (iteration + 1) as f64 / (self.warm_up + 1) as f64;
         let left = (n_iterations - iteration) as f64 / n_iterations.max(1) as f64;
-        let fall = if self.decay > 0.0 { left / self.decay } else { 1.0 };
+        let fall = if self.decay > 0.0 {
+            left / self.decay
+        } else {
+            1.0
+        };
         self.peak * rise.min(1.0) * fall.min(1.0)
     }
 }
@@ -102,10 +106,17 @@ pub struct Sampling {
 
 impl Sampling {
     pub(crate) fn at(&self, iteration: usize) -> SamplingConfig {
-        let doublings = self.double_every.map_or(0, |every| iteration / every.max(1));
-        let factor = 1usize.checked_shl(doublings.min(40) as u32).unwrap_or(usize::MAX);
+        let doublings = self
+            .double_every
+            .map_or(0, |every| iteration / every.max(1));
+        let factor = 1usize
+            .checked_shl(doublings.min(40) as u32)
+            .unwrap_or(usize::MAX);
         SamplingConfig {
-            n_samples: self.n_samples.saturating_mul(factor).min(self.max_samples.max(self.n_samples)),
+            n_samples: self
+                .n_samples
+                .saturating_mul(factor)
+                .min(self.max_samples.max(self.n_samples)),
             face_uniform: self.face_uniform,
             normal_bias: self.normal_bias,
         }

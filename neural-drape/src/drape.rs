@@ -1,9 +1,11 @@
 //! The stepper: one engine for every parametrisation and every preset.
 
-use mesh_core::{Landmark, Positions, TargetSurface, Triangulation, UnitFrame, Vector3, VertexData};
+use mesh_core::{
+    Landmark, Positions, TargetSurface, Triangulation, UnitFrame, Vector3, VertexData,
+};
 use mesh_loss::{
-    AreaKl, Chamfer, Conformal, CornerAngle, Flip, FoldBarrier, LandmarkDistance, LocalShape, Loss, Matches,
-    NormalAgreement, Smoothness, SurfaceMatcher, TriangleQuality, WorstDistance,
+    AreaKl, Chamfer, Conformal, CornerAngle, Flip, FoldBarrier, LandmarkDistance, LocalShape, Loss,
+    Matches, NormalAgreement, Smoothness, SurfaceMatcher, TriangleQuality, WorstDistance,
 };
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -120,7 +122,10 @@ impl<'a> Drape<'a> {
             return Ok(None);
         }
         let weights = self.config.weights_at(self.iteration);
-        let rate = self.config.learning_rate.at(self.iteration, self.n_iterations);
+        let rate = self
+            .config
+            .learning_rate
+            .at(self.iteration, self.n_iterations);
         let progress = self.iteration as f64 / self.n_iterations as f64;
         self.parametrization.set_progress(progress)?;
 
@@ -146,7 +151,9 @@ impl<'a> Drape<'a> {
 
     /// Where the vertices are now, in the target's coordinates.
     pub fn positions(&self) -> Positions {
-        self.parametrization.positions().map(|p| self.frame.from_unit(p))
+        self.parametrization
+            .positions()
+            .map(|p| self.frame.from_unit(p))
     }
 
     /// Replaces the landmarks from the next step on.
@@ -156,7 +163,12 @@ impl<'a> Drape<'a> {
     pub fn set_landmarks(&mut self, landmarks: &[Landmark]) -> Result<(), DrapeError> {
         let n_vertices = self.gradient.len();
         for (row, landmark) in landmarks.iter().enumerate() {
-            if let Some(v) = landmark.source.vertices.iter().find(|v| v.index() >= n_vertices) {
+            if let Some(v) = landmark
+                .source
+                .vertices
+                .iter()
+                .find(|v| v.index() >= n_vertices)
+            {
                 return Err(DrapeError::LandmarkOutOfRange {
                     landmark: row,
                     vertex: v.index(),
@@ -234,7 +246,11 @@ impl<'a> Drape<'a> {
 type Term<'t> = (&'static str, f64, &'t dyn Loss);
 
 /// Adds every term that counts and reports it.
-fn accumulate(terms: &[Term<'_>], x: &Positions, gradient: &mut VertexData<Vector3>) -> Vec<TermReport> {
+fn accumulate(
+    terms: &[Term<'_>],
+    x: &Positions,
+    gradient: &mut VertexData<Vector3>,
+) -> Vec<TermReport> {
     terms
         .iter()
         .filter(|(_, weight, _)| *weight > 0.0)
@@ -278,7 +294,9 @@ fn check(input: &DrapeInput<'_>) -> Result<(), DrapeError> {
             expected,
         });
     }
-    let area: f64 = mesh_core::measure::triangle_areas(input.triangulation, input.rest).iter().sum();
+    let area: f64 = mesh_core::measure::triangle_areas(input.triangulation, input.rest)
+        .iter()
+        .sum();
     if area > 0.0 {
         Ok(())
     } else {

@@ -18,16 +18,22 @@ pub struct VerticesConfig {
     pub n_levels: usize,
     /// Decay rates of Adam's two running means.
     pub betas: [f64; 2],
+    /// How far the step of a vertex follows its own gradients at the end: 0 one scale for all, 1 each its own. 0..=1
+    pub adaptivity: f64,
+    /// Share of the run from which it does, 0..=1; before, one scale holds for all.
+    pub adapt_from: f64,
 }
 
 impl VerticesConfig {
-    /// From a tenth of the shape to a fiftieth, and Adam's usual rates.
+    /// From a tenth of the shape to a fiftieth; small faces, whose gradients are small, catch up in the last third.
     pub const fn standard() -> Self {
         Self {
             smoothing_start: 0.1,
             smoothing_end: 0.02,
             n_levels: 6,
-            betas: [0.9, 0.999],
+            betas: [0.9, 0.99],
+            adaptivity: 0.5,
+            adapt_from: 0.66,
         }
     }
 }
@@ -60,7 +66,10 @@ impl Vertices {
     ) -> Result<Self, DrapeError> {
         let n = initial.len();
         let edges = unique_edges(triangulation);
-        let total: f64 = edges.iter().map(|&[a, b]| (initial[a] - initial[b]).norm()).sum();
+        let total: f64 = edges
+            .iter()
+            .map(|&[a, b]| (initial[a] - initial[b]).norm())
+            .sum();
         let mean_edge = (total / edges.len().max(1) as f64).max(f64::MIN_POSITIVE);
         let laplacian = mesh_operators::uniform_laplacian(n, edges);
         let solver = SpdSolver::new(&preconditioner(&laplacian, mean_edge, config, 0))?;
@@ -114,10 +123,12 @@ impl Parametrization for Vertices {
     ) -> Result<(), DrapeError> {
         // dL/du = (I + λL)⁻¹ dL/dx
         self.step.copy_from_slice(gradient.as_slice());
-        self.solver.solve_in_place(&mut self.step, &mut self.scratch);
+        self.solver
+            .solve_in_place(&mut self.step, &mut self.scratch);
         self.adam.turn_into_step(&mut self.step, learning_rate);
         // Δx = (I + λL)⁻¹ Δu
-        self.solver.solve_in_place(&mut self.step, &mut self.scratch);
+        self.solver
+            .solve_in_place(&mut self.step, &mut self.scratch);
         for (p, step) in self.positions.iter_mut().zip(&self.step) {
             *p -= step;
         }
@@ -125,6 +136,9 @@ impl Parametrization for Vertices {
     }
 
     fn set_progress(&mut self, progress: f64) -> Result<(), DrapeError> {
+        if progress >= self.config.adapt_from {
+            self.adam.adaptivity = self.config.adaptivity;
+        }
         let n_levels = self.config.n_levels;
         let level = ((progress * n_levels as f64) as usize).min(n_levels - 1);
         if level != self.level {
@@ -139,15 +153,20 @@ impl Parametrization for Vertices {
 /// Adam with one scale for all coordinates: the step keeps the direction that the preconditioner gave it, and noise
 /// is not blown up where the fit is good.
 ///
+/// `Δu = η m / √(v_max^(1−p) vᵢ^p)`, with the running means m of the gradient and v of its square and the adaptivity p
+///
 /// Source: "UniformAdam" of Nicolet et al. 2021, after Kingma and Ba 2015. Departures: the largest running mean square
-/// is taken, not the running mean of the largest square.
+/// is taken, not the running mean of the largest square; the adaptivity (0 there).
 struct UniformAdam {
     mean: Vec<Vector3>,
     mean_square: Vec<Vector3>,
     betas: [f64; 2],
     n_steps: i32,
+    adaptivity: f64,
 }
 
+/// A vertex's mean square counts as at least this share of the largest.
+const SMALLEST_SQUARE: f64 = 1e-8;
 /// Added to the scale, so that a gradient of 0 gives a step of 0.
 const EPSILON: f64 = 1e-12;
 
@@ -158,6 +177,7 @@ impl UniformAdam {
             mean_square: vec![Vector3::zeros(); n],
             betas: config.betas,
             n_steps: 0,
+            adaptivity: 0.0,
         }
     }
 
@@ -167,14 +187,24 @@ impl UniformAdam {
         let [b1, b2] = self.betas;
         let (c1, c2) = (1.0 - b1.powi(self.n_steps), 1.0 - b2.powi(self.n_steps));
         let mut largest = 0.0f64;
-        for ((g, m), v) in gradient.iter().zip(&mut self.mean).zip(&mut self.mean_square) {
+        for ((g, m), v) in gradient
+            .iter()
+            .zip(&mut self.mean)
+            .zip(&mut self.mean_square)
+        {
             *m = *m * b1 + *g * (1.0 - b1);
             *v = *v * b2 + g.component_mul(g) * (1.0 - b2);
             largest = largest.max(v.max());
         }
         let scale = learning_rate / (c1 * ((largest / c2).sqrt() + EPSILON));
-        for (g, m) in gradient.iter_mut().zip(&self.mean) {
-            *g = m * scale;
+        let floor = largest * SMALLEST_SQUARE;
+        for ((g, m), v) in gradient.iter_mut().zip(&self.mean).zip(&self.mean_square) {
+            let own = if self.adaptivity > 0.0 && largest > 0.0 {
+                (largest / (v.mean().max(floor))).powf(0.5 * self.adaptivity)
+            } else {
+                1.0
+            };
+            *g = m * (scale * own);
         }
     }
 }

@@ -5,8 +5,9 @@ use mesh_core::{
     UnitFrame, Vector3, VertexData, VertexId,
 };
 use mesh_loss::{
-    AreaKl, Chamfer, Conformal, CornerAngle, Flip, FoldBarrier, LandmarkDistance, LocalShape, Loss, Matches,
-    NormalAgreement, SamplingConfig, Smoothness, SurfaceMatcher, TriangleQuality, WorstDistance,
+    AreaKl, Chamfer, Conformal, CornerAngle, Flip, FoldBarrier, LandmarkDistance, LocalShape, Loss,
+    Matches, NormalAgreement, SamplingConfig, Smoothness, SurfaceMatcher, TriangleQuality,
+    WorstDistance,
 };
 use proptest::prelude::*;
 use rand::{Rng, SeedableRng};
@@ -16,7 +17,10 @@ use rand_chacha::ChaCha8Rng;
 const STEP: f64 = 1e-5;
 
 /// The frame whose coordinates are those of the target.
-pub(crate) const UNIT: UnitFrame = UnitFrame { center: Point3::new(0.0, 0.0, 0.0), scale: 1.0 };
+pub(crate) const UNIT: UnitFrame = UnitFrame {
+    center: Point3::new(0.0, 0.0, 0.0),
+    scale: 1.0,
+};
 
 pub(crate) fn all_shapes() -> Vec<PolygonSoup> {
     vec![
@@ -56,15 +60,19 @@ fn random_vector(rng: &mut ChaCha8Rng) -> Vector3 {
 
 /// Directional derivative along random directions; a kink shows as disagreement of the two one-sided differences
 /// and is passed over.
-fn assert_gradient(loss: &dyn Loss, x: &Positions, rng: &mut ChaCha8Rng) -> Result<(), TestCaseError> {
-    let value_at = |x: &Positions| loss.accumulate(x, 1.0, &mut VertexData::new(x.len(), Vector3::zeros()));
+fn assert_gradient(
+    loss: &dyn Loss,
+    x: &Positions,
+    rng: &mut ChaCha8Rng,
+) -> Result<(), TestCaseError> {
+    let value_at =
+        |x: &Positions| loss.accumulate(x, 1.0, &mut VertexData::new(x.len(), Vector3::zeros()));
     let mut gradient = VertexData::new(x.len(), Vector3::zeros());
     let value = loss.accumulate(x, 3.0, &mut gradient);
     for _ in 0..4 {
         let direction: Vec<Vector3> = (0..x.len()).map(|_| random_vector(rng)).collect();
-        let shifted = |h: f64| -> Positions {
-            x.iter().zip(&direction).map(|(p, d)| p + d * h).collect()
-        };
+        let shifted =
+            |h: f64| -> Positions { x.iter().zip(&direction).map(|(p, d)| p + d * h).collect() };
         let (ahead, behind) = (value_at(&shifted(STEP)), value_at(&shifted(-STEP)));
         let forward = (ahead - value) / STEP;
         let backward = (value - behind) / STEP;
@@ -72,7 +80,12 @@ fn assert_gradient(loss: &dyn Loss, x: &Positions, rng: &mut ChaCha8Rng) -> Resu
             continue;
         }
         let numeric = (ahead - behind) / (2.0 * STEP);
-        let analytic = gradient.iter().zip(&direction).map(|(g, d)| g.dot(d)).sum::<f64>() / 3.0;
+        let analytic = gradient
+            .iter()
+            .zip(&direction)
+            .map(|(g, d)| g.dot(d))
+            .sum::<f64>()
+            / 3.0;
         prop_assert!(
             (numeric - analytic).abs() <= 1e-6 * (1.0 + numeric.abs() + value.abs()),
             "central difference {numeric}, gradient {analytic}"
@@ -88,7 +101,8 @@ fn matches(s: &mut Setup, normal_bias: Option<f64>) -> Matches {
         face_uniform: 0.5,
         normal_bias,
     };
-    SurfaceMatcher::new(&s.triangulation, &s.moved, &target, UNIT).resample(&s.moved, &config, &mut s.rng)
+    SurfaceMatcher::new(&s.triangulation, &s.moved, &target, UNIT)
+        .resample(&s.moved, &config, &mut s.rng)
 }
 
 proptest! {

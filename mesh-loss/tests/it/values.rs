@@ -2,8 +2,8 @@
 
 use mesh_core::{shapes, Point3, Positions, TriangleSoup, Vector3, VertexData};
 use mesh_loss::{
-    AreaKl, Chamfer, Conformal, CornerAngle, Flip, FoldBarrier, LocalShape, Loss, SamplingConfig, Smoothness,
-    SurfaceMatcher, TriangleQuality, WorstDistance,
+    AreaKl, Chamfer, Conformal, CornerAngle, Flip, FoldBarrier, LocalShape, Loss, SamplingConfig,
+    Smoothness, SurfaceMatcher, TriangleQuality, WorstDistance,
 };
 use proptest::prelude::*;
 
@@ -23,7 +23,10 @@ fn structural_terms_and_their_gradients_vanish_at_rest() {
         let terms: [&dyn Loss; 8] = [
             &CornerAngle::new(t, &s.rest),
             &AreaKl::new(t, &s.rest),
-            &TriangleQuality { triangulation: t, threshold: 0.1 },
+            &TriangleQuality {
+                triangulation: t,
+                threshold: 0.1,
+            },
             &Flip::new(t, &s.rest),
             &FoldBarrier::new(t, &s.rest, 0.3),
             &Conformal::new(t, &s.rest),
@@ -32,8 +35,14 @@ fn structural_terms_and_their_gradients_vanish_at_rest() {
         ];
         for (row, term) in terms.into_iter().enumerate() {
             let (value, gradient) = value_and_gradient(term, &s.rest);
-            assert!(value.abs() < 1e-12, "shape {shape}, term {row}: value {value}");
-            assert!(gradient < 1e-7, "shape {shape}, term {row}: gradient {gradient}");
+            assert!(
+                value.abs() < 1e-12,
+                "shape {shape}, term {row}: value {value}"
+            );
+            assert!(
+                gradient < 1e-7,
+                "shape {shape}, term {row}: gradient {gradient}"
+            );
         }
     }
 }
@@ -68,11 +77,19 @@ fn chamfer_of_a_shifted_plane_is_the_shift() {
     let triangulation = mesh_core::Triangulation::new(&mesh, &rest);
     let target = TriangleSoup::new(shapes::open_grid(4, 4)).unwrap();
     let shifted = rest.map(|p| p + Vector3::z() * 0.25);
-    let config = SamplingConfig { n_samples: 100, face_uniform: 0.5, normal_bias: None };
+    let config = SamplingConfig {
+        n_samples: 100,
+        face_uniform: 0.5,
+        normal_bias: None,
+    };
     let mut rng = <rand_chacha::ChaCha8Rng as rand::SeedableRng>::seed_from_u64(3);
-    let matches = SurfaceMatcher::new(&triangulation, &shifted, &target, UNIT).resample(&shifted, &config, &mut rng);
+    let matches = SurfaceMatcher::new(&triangulation, &shifted, &target, UNIT)
+        .resample(&shifted, &config, &mut rng);
     assert!((value_and_gradient(&Chamfer(&matches), &shifted).0 - 0.5).abs() < 1e-12);
-    let worst = WorstDistance { matches: &matches, share: 0.05 };
+    let worst = WorstDistance {
+        matches: &matches,
+        share: 0.05,
+    };
     assert!((value_and_gradient(&worst, &shifted).0 - 0.5).abs() < 1e-12);
 }
 
