@@ -1,10 +1,10 @@
 //! The pictures of a run: source, target, initial deformation, result and heat maps, all seen from one direction.
 
-use mesh_core::{FaceData, Landmark, Point3, Positions, VertexData};
+use mesh_core::{FaceData, Point3, Positions, VertexData};
 use nalgebra::Matrix3;
 
-use crate::input::{Source, Target};
-use crate::render::{color, draw, Axes, Image, Look, Model, Up, View};
+use crate::input::Pair;
+use crate::render::{color, draw, Axes, Image, Look, Model, Shot, Up, View};
 use crate::similarity::{fit, Match};
 
 /// Distance at the bright end of the heat map, in longest sides of the target's box.
@@ -36,11 +36,9 @@ impl ViewArgs {
     }
 }
 
-/// The shapes of one run, ready to be drawn.
+/// The shapes of one pair, ready to be drawn.
 pub(crate) struct Gallery<'a> {
-    source: &'a Source,
-    target: &'a Target,
-    landmarks: &'a [Landmark],
+    pair: &'a Pair,
     /// Turns the source as the target stands.
     turn: Matrix3<f64>,
     up: Up,
@@ -48,38 +46,36 @@ pub(crate) struct Gallery<'a> {
 }
 
 impl<'a> Gallery<'a> {
-    pub(crate) fn new(
-        source: &'a Source,
-        target: &'a Target,
-        landmarks: &'a [Landmark],
-        initial: &Positions,
-        (up, size): (Up, usize),
-    ) -> Self {
-        let matches = source.rest.iter().zip(initial.iter());
+    /// Pictures of `size` pixels along each side; `placed` is the source in the target's coordinates.
+    pub(crate) fn new(pair: &'a Pair, placed: &Positions, up: Up, size: usize) -> Self {
+        let matches = pair.source.rest.iter().zip(placed.iter());
         let matches: Vec<Match> = matches.map(|(&from, &to)| Match { from, to }).collect();
         Self {
-            source,
-            target,
-            landmarks,
+            pair,
             turn: fit(&matches).turn,
             up,
             size,
         }
     }
 
-    fn shot(&self, view: View) -> (Axes, [usize; 2]) {
-        (Axes::new(view, self.up), [self.size; 2])
+    fn shot(&self, view: View) -> Shot {
+        Shot {
+            axes: Axes::new(view, self.up),
+            size: self.size,
+        }
     }
 
     pub(crate) fn source(&self, view: View) -> Image {
         let model = self
+            .pair
             .source
-            .model(&self.source.rest)
+            .model(&self.pair.source.rest)
             .mapped(|p| self.turn * p, |n| self.turn * n);
         let marks = self
+            .pair
             .landmarks
             .iter()
-            .map(|l| self.turn * l.source.position(&self.source.rest));
+            .map(|l| self.turn * l.source.position(&self.pair.source.rest));
         let marks: Vec<Point3> = marks.collect();
         draw(
             &model,
@@ -91,9 +87,9 @@ impl<'a> Gallery<'a> {
     }
 
     pub(crate) fn target(&self, view: View) -> Image {
-        let marks: Vec<Point3> = self.landmarks.iter().map(|l| l.target).collect();
+        let marks: Vec<Point3> = self.pair.landmarks.iter().map(|l| l.target).collect();
         draw(
-            &self.target.model,
+            &self.pair.target.model,
             &Look::plain(color::TARGET),
             &marks,
             &[],
@@ -123,19 +119,19 @@ impl<'a> Gallery<'a> {
 
     /// A mesh in the target's coordinates, framed with the target.
     fn on_target(&self, positions: &Positions, look: &Look, view: View) -> Image {
-        let model: Model = self.source.model(positions);
+        let model: Model = self.pair.source.model(positions);
         draw(
             &model,
             look,
             &[],
-            &self.target.model.seen_points(),
+            &self.pair.target.model.seen_points(),
             self.shot(view),
         )
     }
 
     /// Stretch above 1 at each vertex: the mean over its faces.
     pub(crate) fn stretch_at_vertices(&self, face_stretch: &FaceData<f64>) -> VertexData<f64> {
-        let mesh = &self.source.mesh;
+        let mesh = &self.pair.source.mesh;
         let mut sums = VertexData::new(mesh.n_vertices(), (0.0, 0.0));
         for f in mesh.faces() {
             for &v in mesh.face_vertices(f) {

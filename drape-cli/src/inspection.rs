@@ -144,7 +144,12 @@ type TextRow = (&'static str, String);
 
 impl Inspection {
     fn elements(&self) -> Vec<TextRow> {
-        let unused = noted(self.unused_vertices, "that no face uses");
+        let n_unused = if self.faces > 0 {
+            self.unused_vertices
+        } else {
+            0
+        };
+        let unused = noted(n_unused, "that no face uses");
         vec![
             ("format", self.format.to_owned()),
             ("vertices", format!("{}{unused}", self.vertices)),
@@ -224,19 +229,15 @@ fn faces_in_words(inspection: &Inspection) -> String {
         k => format!("{n} with {k} corners"),
     };
     let parts: Vec<String> = inspection.faces_by_corners.iter().map(arity).collect();
-    let list = if parts.is_empty() {
-        String::new()
-    } else {
-        format!(": {}", parts.join(", "))
-    };
-    format!(
-        "{}{list}{}",
-        inspection.faces,
-        noted(
-            inspection.degenerate_faces,
-            "without three different corners"
-        )
-    )
+    let degenerate = noted(
+        inspection.degenerate_faces,
+        "without three different corners",
+    );
+    match parts.as_slice() {
+        [] => "none".to_owned(),
+        [all] => format!("{all}{degenerate}"),
+        several => format!("{}: {}{degenerate}", inspection.faces, several.join(", ")),
+    }
 }
 
 fn corner([x, y, z]: [f64; 3]) -> String {

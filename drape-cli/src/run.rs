@@ -22,7 +22,6 @@ pub(crate) struct Run {
     pub(crate) draped: Positions,
     pub(crate) report: Report,
     pub(crate) history: History,
-    pub(crate) warnings: Vec<String>,
     /// Seconds of each stage.
     pub(crate) stages: Vec<(&'static str, f64)>,
     pub(crate) usage: Usage,
@@ -36,7 +35,7 @@ impl Run {
         pair: &Pair,
         settings: Settings,
         truth: Option<&Positions>,
-        (watch, warnings): (&Stopwatch, Vec<String>),
+        watch: &Stopwatch,
     ) -> anyhow::Result<Self> {
         let mut clock = StageClock::start();
         let initial = deform(pair, settings.start)?;
@@ -53,7 +52,6 @@ impl Run {
             network: drape.network,
             history: drape.history,
             report,
-            warnings,
             stages: clock.laps,
             usage: watch.read(),
         })

@@ -124,7 +124,8 @@ fn options_and_settings() {
     let ended = place.drape("transfer source.obj target.ply --config wrong.toml -o out.obj");
     assert_refused(&place, &ended, &["wrong.toml", "n_sampels"]);
     place.write("wrong.toml", "worst_share = 3\n");
-    let ended = place.drape("transfer source.obj target.ply --config wrong.toml -o out.obj");
+    let ended = place
+        .drape("transfer source.obj target.ply -l landmarks.json --config wrong.toml -o out.obj");
     assert_refused(&place, &ended, &["worst_share"]);
 }
 

@@ -63,13 +63,7 @@ pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let report = judge(&pair, &positions, truth.as_ref())?;
     pair.file.write(&args.output, &positions)?;
     if let Some(path) = &args.render {
-        let gallery = Gallery::new(
-            &pair.source,
-            &pair.target,
-            &pair.landmarks,
-            &positions,
-            (args.view.up, PICTURE_SIZE),
-        );
+        let gallery = Gallery::new(&pair, &positions, args.view.up, PICTURE_SIZE);
         let row = |view| {
             Image::row(&[
                 gallery.source(view),

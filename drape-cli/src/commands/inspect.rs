@@ -7,9 +7,10 @@ use anyhow::Context as _;
 use mesh_core::io;
 
 use crate::gallery::ViewArgs;
+use crate::input::read_target;
 use crate::inspection::Inspection;
 use crate::output::{check_writable, say};
-use crate::render::{color, draw, Axes, Image, Look, Model, View};
+use crate::render::{color, draw, Axes, Image, Look, Model, Shot, View};
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
@@ -40,11 +41,19 @@ pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
         say(&inspection.to_string())?;
     }
     if let Some(path) = &args.render {
-        let model = Model::of_soup(file.soup())?;
+        let is_cloud = file.soup().faces.is_empty();
+        let model = if is_cloud {
+            read_target(&args.file)?.model
+        } else {
+            Model::of_soup(file.soup())?
+        };
         let views = args
             .view
             .views_or(&[View::FRONT_QUARTER, View::BACK_QUARTER]);
-        let shot = |view: &View| (Axes::new(*view, args.view.up), [PICTURE_SIZE; 2]);
+        let shot = |view: &View| Shot {
+            axes: Axes::new(*view, args.view.up),
+            size: PICTURE_SIZE,
+        };
         let pictures = views
             .iter()
             .map(|view| draw(&model, &Look::outlined(color::SOURCE), &[], &[], shot(view)));

@@ -74,22 +74,21 @@ pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let mut warnings = doctor::examine(&pair);
     warnings.extend(pair.file.lost_in(&args.output));
     warn(&warnings);
-    let run = Run::new(&pair, settings, truth.as_ref(), (&watch, warnings))?;
-
-    pair.file.write(&args.output, &run.draped)?;
-    if let Some(path) = &args.warp {
-        run.warp(&pair)?.save(path)?;
-    }
-    draw(args, &pair, &run, truth.as_ref())?;
-    say(&if args.json {
-        json(args, &run)?
-    } else {
-        text(args, &run)
-    })?;
+    let run = Run::new(&pair, settings, truth.as_ref(), &watch)?;
+    let done = Done {
+        args,
+        pair,
+        truth,
+        warnings,
+        run,
+    };
+    done.write()?;
+    say(&if args.json { done.json()? } else { done.text() })?;
+    let figures = done.run.figures();
     Ok(args
         .require
         .as_ref()
-        .map_or(ExitCode::SUCCESS, |r| r.verdict(&run.figures())))
+        .map_or(ExitCode::SUCCESS, |r| r.verdict(&figures)))
 }
 
 fn check_outputs(args: &Args) -> anyhow::Result<()> {
@@ -117,94 +116,107 @@ fn check_outputs(args: &Args) -> anyhow::Result<()> {
     Ok(())
 }
 
-fn draw(args: &Args, pair: &Pair, run: &Run, truth: Option<&Positions>) -> anyhow::Result<()> {
-    let gallery = |size| {
-        Gallery::new(
-            &pair.source,
-            &pair.target,
-            &pair.landmarks,
-            &run.initial,
-            (args.view.up, size),
-        )
-    };
-    if let Some(path) = &args.render {
-        let gallery = gallery(PNG_PICTURE);
+/// A finished run and what it was asked for.
+struct Done<'a> {
+    args: &'a Args,
+    pair: Pair,
+    truth: Option<Positions>,
+    warnings: Vec<String>,
+    run: Run,
+}
+
+impl Done<'_> {
+    fn write(&self) -> anyhow::Result<()> {
+        let Self {
+            args, pair, run, ..
+        } = self;
+        pair.file.write(&args.output, &run.draped)?;
+        if let Some(path) = &args.warp {
+            run.warp(pair)?.save(path)?;
+        }
+        if let Some(path) = &args.render {
+            self.picture().save(path)?;
+        }
+        if let Some(path) = &args.report {
+            write_atomic(path, self.page()?.as_bytes())?;
+        }
+        Ok(())
+    }
+
+    /// Source, target, initial deformation, result and distances, a row for each view.
+    fn picture(&self) -> Image {
+        let Self { args, run, .. } = self;
+        let gallery = Gallery::new(&self.pair, &run.initial, args.view.up, PNG_PICTURE);
+        let distances = &run.report.vertex_distances;
         let row = |view| {
             Image::row(&[
                 gallery.source(view),
                 gallery.target(view),
                 gallery.initial(&run.initial, view),
                 gallery.result(&run.draped, view),
-                gallery.heat(
-                    &run.draped,
-                    &run.report.vertex_distances,
-                    DISTANCE_AT_TOP,
-                    view,
-                ),
+                gallery.heat(&run.draped, distances, DISTANCE_AT_TOP, view),
             ])
         };
-        let rows: Vec<Image> = args
-            .view
-            .views_or(&[View::FRONT_QUARTER])
-            .into_iter()
-            .map(row)
-            .collect();
-        Image::column(&rows).save(path)?;
+        let views = args.view.views_or(&[View::FRONT_QUARTER]);
+        Image::column(&views.into_iter().map(row).collect::<Vec<_>>())
     }
-    if let Some(path) = &args.report {
+
+    fn page(&self) -> anyhow::Result<String> {
+        let Self { args, run, .. } = self;
         let page = Page {
-            title: &format!("{} draped over {}", stem(&args.source), stem(&args.target)),
+            title: &format!("{} draped over {}", name(&args.source), name(&args.target)),
             run,
-            gallery: &gallery(REPORT_PICTURE),
+            gallery: &Gallery::new(&self.pair, &run.initial, args.view.up, REPORT_PICTURE),
             views: &args
                 .view
                 .views_or(&[View::FRONT_QUARTER, View::BACK_QUARTER]),
-            truth,
+            warnings: &self.warnings,
+            truth: self.truth.as_ref(),
         };
-        write_atomic(path, page.to_html()?.as_bytes())?;
+        page.to_html()
     }
-    Ok(())
+
+    fn text(&self) -> String {
+        let Self { args, run, .. } = self;
+        let outputs = [
+            Some(&args.output),
+            args.warp.as_ref(),
+            args.render.as_ref(),
+            args.report.as_ref(),
+        ];
+        let wrote = |path: &PathBuf| format!("wrote {}\n", path.display());
+        let written: String = outputs.into_iter().flatten().map(wrote).collect();
+        let (settings, usage) = (&run.settings, &run.usage);
+        let seed = settings.config.seed;
+        format!(
+            "{}\npreset {}, seed {seed}: {usage}\n{written}",
+            run.report, settings.preset
+        )
+    }
+
+    fn json(&self) -> anyhow::Result<String> {
+        let Self { args, run, .. } = self;
+        let json = serde_json::json!({
+            "source": args.source,
+            "target": args.target,
+            "landmarks": args.landmarks,
+            "output": args.output,
+            "preset": run.settings.preset,
+            "initial": run.settings.start,
+            "settings": run.settings.config,
+            "figures": run.figures().into_iter().collect::<BTreeMap<_, _>>(),
+            "report": run.report,
+            "usage": run.usage,
+            "stages": run.stages.iter().copied().collect::<BTreeMap<_, _>>(),
+            "warnings": self.warnings,
+        });
+        Ok(format!("{json:#}\n"))
+    }
 }
 
-fn stem(path: &Path) -> String {
+fn name(path: &Path) -> String {
     path.file_name()
         .unwrap_or(path.as_os_str())
         .to_string_lossy()
         .into_owned()
-}
-
-fn text(args: &Args, run: &Run) -> String {
-    let outputs = [
-        Some(&args.output),
-        args.warp.as_ref(),
-        args.render.as_ref(),
-        args.report.as_ref(),
-    ];
-    let written: String = outputs
-        .into_iter()
-        .flatten()
-        .map(|path| format!("wrote {}\n", path.display()))
-        .collect();
-    let settings = &run.settings;
-    format!(
-        "{}\npreset {}, seed {}: {}\n{written}",
-        run.report, settings.preset, settings.config.seed, run.usage
-    )
-}
-
-fn json(args: &Args, run: &Run) -> anyhow::Result<String> {
-    let json = serde_json::json!({
-        "source": args.source,
-        "target": args.target,
-        "landmarks": args.landmarks,
-        "output": args.output,
-        "preset": run.settings.preset,
-        "settings": run.settings.config,
-        "figures": run.figures().into_iter().collect::<BTreeMap<_, _>>(),
-        "report": run.report,
-        "usage": run.usage,
-        "stages": run.stages.iter().copied().collect::<BTreeMap<_, _>>(),
-        "warnings": run.warnings,
-    });
-    Ok(format!("{json:#}\n"))
 }

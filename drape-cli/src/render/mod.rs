@@ -9,4 +9,4 @@ mod raster;
 pub(crate) use camera::{Axes, Up, View};
 pub(crate) use image::Image;
 pub(crate) use model::Model;
-pub(crate) use raster::{draw, Look};
+pub(crate) use raster::{draw, Look, Shot};

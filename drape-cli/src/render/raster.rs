@@ -12,9 +12,17 @@ const SUPERSAMPLING: usize = 2;
 /// Half the width of an outline, in canvas pixels.
 const HALF_OUTLINE: f64 = 0.9;
 const OUTLINE: Rgb = [0.09, 0.11, 0.15];
-/// Mean length of an outline, in canvas pixels, at which it is drawn fully: denser nets fade into the shading.
+/// Mean length of a triangle's outlines, in canvas pixels, at which they are drawn fully: denser nets fade.
 const CLEAR_OUTLINE_LENGTH: f64 = 16.0;
 const MARKER_RADIUS: f64 = 7.0;
+
+/// A square picture and the direction it is taken from.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Shot {
+    pub(crate) axes: Axes,
+    /// Pixels along each side.
+    pub(crate) size: usize,
+}
 
 /// How a shape looks.
 #[derive(Clone, Debug)]
@@ -57,18 +65,18 @@ impl Look {
     }
 }
 
-/// Draws `model` in a picture of `size` pixels, framed so that `frame` and the model itself fit, with a dot at each
+/// Draws `model`, framed so that `frame` and the model itself fit, with a dot at each
 /// of `markers`.
 pub(crate) fn draw(
     model: &Model,
     look: &Look,
     markers: &[mesh_core::Point3],
     frame: &[mesh_core::Point3],
-    (axes, size): (Axes, [usize; 2]),
+    shot: Shot,
 ) -> Image {
-    let canvas_size = size.map(|s| s * SUPERSAMPLING);
+    let canvas_size = [shot.size * SUPERSAMPLING; 2];
     let seen = model.seen_points();
-    let camera = Camera::fit(axes, seen.iter().chain(frame), canvas_size);
+    let camera = Camera::fit(shot.axes, seen.iter().chain(frame), canvas_size);
     let mut canvas = Canvas::new(canvas_size);
     if model.facets.is_empty() {
         draw_cloud(&mut canvas, model, look, &camera);
@@ -84,11 +92,6 @@ pub(crate) fn draw(
 
 fn draw_facets(canvas: &mut Canvas, model: &Model, look: &Look, camera: &Camera) {
     let projected: Vec<[f64; 3]> = model.positions.iter().map(|p| camera.project(p)).collect();
-    let outline_strength = if look.has_outlines {
-        outline_strength(&projected, &model.facets)
-    } else {
-        0.0
-    };
     for facet in &model.facets {
         let Some(shape) = ScreenTriangle::new(facet.corners.map(|c| projected[c])) else {
             continue;
@@ -105,19 +108,22 @@ fn draw_facets(canvas: &mut Canvas, model: &Model, look: &Look, camera: &Camera)
             };
             shade(look.color_of(c), normal, is_back, &camera.axes)
         });
-        canvas.fill(&shape, facet, colors, outline_strength as f32);
+        let outlines = if look.has_outlines {
+            outline_strength(&shape, facet)
+        } else {
+            0.0
+        };
+        canvas.fill(&shape, facet, colors, outlines as f32);
     }
 }
 
-/// Full strength for clear nets, fading as their lines come closer than they are wide.
-fn outline_strength(projected: &[[f64; 3]], facets: &[Facet]) -> f64 {
-    let lengths = facets.iter().flat_map(|f| {
-        (0..3)
-            .filter(|&k| f.is_outline[k])
-            .map(|k| side_length(projected[f.corners[k]], projected[f.corners[(k + 1) % 3]]))
-    });
-    let (sum, count) = lengths.fold((0.0, 0usize), |(s, n), length| (s + length, n + 1));
-    (sum / count.max(1) as f64 / CLEAR_OUTLINE_LENGTH).clamp(0.12, 0.85)
+/// Full strength for clear nets, fading where their lines come closer than they are wide.
+fn outline_strength(shape: &ScreenTriangle, facet: &Facet) -> f64 {
+    let outlines = (0..3)
+        .filter(|&k| facet.is_outline[k])
+        .map(|k| shape.side_lengths[k]);
+    let (sum, n) = outlines.fold((0.0, 0.0), |(sum, n), length| (sum + length, n + 1.0));
+    (sum / f64::max(n, 1.0) / CLEAR_OUTLINE_LENGTH).clamp(0.06, 0.85)
 }
 
 fn side_length(a: [f64; 3], b: [f64; 3]) -> f64 {
@@ -127,14 +133,18 @@ fn side_length(a: [f64; 3], b: [f64; 3]) -> f64 {
 fn draw_cloud(canvas: &mut Canvas, model: &Model, look: &Look, camera: &Camera) {
     let [width, height] = canvas.size.map(|s| s as f64);
     let spacing = (0.4 * width * height / model.positions.len().max(1) as f64).sqrt();
-    let radius = (0.75 * spacing).clamp(1.5, 8.0);
+    let radius = (0.9 * spacing).clamp(1.5, 9.0);
     for (i, p) in model.positions.iter().enumerate() {
         let towards = camera.axes.towards_viewer;
         let normal = Some(model.normals[i])
             .filter(|n| n.norm_squared() > 0.0)
             .unwrap_or(towards);
-        let is_back = normal.dot(&towards) < 0.0;
-        let color = shade(look.color_of(i), normal, is_back, &camera.axes);
+        let facing = if normal.dot(&towards) < 0.0 {
+            -normal
+        } else {
+            normal
+        };
+        let color = shade(look.color_of(i), facing, false, &camera.axes);
         canvas.disc(camera.project(p), radius, color);
     }
 }
@@ -332,17 +342,15 @@ mod tests {
     use super::super::camera::{Up, View};
     use super::*;
 
-    fn shot(azimuth: f64) -> (Axes, [usize; 2]) {
-        (
-            Axes::new(
-                View {
-                    azimuth,
-                    elevation: 0.0,
-                },
-                Up::Y,
-            ),
-            [64, 64],
-        )
+    fn shot(azimuth: f64) -> Shot {
+        let view = View {
+            azimuth,
+            elevation: 0.0,
+        };
+        Shot {
+            axes: Axes::new(view, Up::Y),
+            size: 64,
+        }
     }
 
     #[test]

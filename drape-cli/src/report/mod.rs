@@ -21,6 +21,8 @@ pub(crate) struct Page<'a> {
     pub(crate) run: &'a Run,
     pub(crate) gallery: &'a Gallery<'a>,
     pub(crate) views: &'a [View],
+    /// What the doctor said.
+    pub(crate) warnings: &'a [String],
     /// Where each vertex belongs, if known.
     pub(crate) truth: Option<&'a Positions>,
 }
@@ -35,7 +37,7 @@ impl Page<'_> {
             escape(&self.subtitle())
         );
         body += &cards(run);
-        body += &warnings(&run.warnings);
+        body += &warnings(self.warnings);
         body += &section("Pictures", &self.pictures()?);
         body += &section("Heat maps", &self.heat_maps()?);
         body += &section("Figures", &figures(run));
