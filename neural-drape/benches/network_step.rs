@@ -1,4 +1,6 @@
 //! One step of the network (backward, Adam, forward) beside its bare matrix products.
+//!
+//! The products run on one thread: to compare, run the steps on one too (`RAYON_NUM_THREADS=1`).
 
 use std::hint::black_box;
 
@@ -27,10 +29,13 @@ fn step(c: &mut Criterion) {
         group.throughput(Throughput::Elements(n as u64));
         let x = points(n);
         let gradient: VertexData<Vector3> = x.map(|p| p.coords / n as f64);
-        for (name, config) in [
-            ("standard", NetworkConfig::standard()),
-            ("paper", NetworkConfig::paper()),
-        ] {
+        let standard = NetworkConfig::standard();
+        let wide = NetworkConfig {
+            width: 256,
+            ..standard
+        };
+        let paper = NetworkConfig::paper();
+        for (name, config) in [("standard", standard), ("wide", wide), ("paper", paper)] {
             let mut network = Network::new(&x, &config, 0).expect("presets are valid");
             network
                 .set_progress(1.0)
@@ -39,10 +44,12 @@ fn step(c: &mut Criterion) {
                 b.iter(|| network.descend(black_box(&gradient), 1e-6));
             });
         }
-        group.bench_function(BenchmarkId::new("bare_products", n), |b| {
-            let mut products = Products::new(n);
-            b.iter(|| products.run());
-        });
+        for width in [128, 256] {
+            group.bench_function(BenchmarkId::new(format!("products_{width}"), n), |b| {
+                let mut products = Products::new(n, width);
+                b.iter(|| products.run());
+            });
+        }
     }
     group.finish();
 }
@@ -55,8 +62,8 @@ struct Products {
 }
 
 impl Products {
-    fn new(n: usize) -> Self {
-        let sizes = [255, 256, 256, 256, 256, 3];
+    fn new(n: usize, width: usize) -> Self {
+        let sizes = [255, width, width, width, width, 3];
         Self {
             activations: sizes
                 .iter()

@@ -98,14 +98,17 @@ impl NetworkConfig {
         }
     }
 
-    /// A network of the same size on fixed random Fourier features, all revealed at 70 % of the run: it fits closer
-    /// in less time, and its features are computed once.
+    /// Half as wide, on fixed random Fourier features of higher frequency, all revealed at 70 % of the run.
+    ///
+    /// The features are computed once, and a step costs a third of the paper's. It fits closer than the paper's
+    /// waves in the same number of steps; 256 neurons fit a little closer still, at twice the cost.
     pub fn standard() -> Self {
         Self {
+            width: 128,
             encoding: Encoding::Progressive {
                 frequencies: Frequencies::Gaussian {
                     count: 126,
-                    deviation: 3.0,
+                    deviation: 8.0,
                 },
                 n_blocks: 6,
                 reveal: Reveal::Even { until: 0.7 },

@@ -1,0 +1,68 @@
+//! A sphere of quads and an ellipsoid of triangles to drape it over.
+
+use mesh_core::{shapes, Point3, PolygonSoup, Positions, TriangleSoup, Triangulation};
+use neural_drape::{Drape, DrapeConfig, DrapeError, DrapeInput, StepReport};
+
+pub(crate) struct Pair {
+    pub(crate) triangulation: Triangulation,
+    pub(crate) rest: Positions,
+    pub(crate) initial: Positions,
+    pub(crate) target: TriangleSoup,
+}
+
+/// Half axes of the target.
+pub(crate) const AXES: [f64; 3] = [1.0, 0.7, 0.5];
+
+pub(crate) fn on_ellipsoid(p: &Point3) -> Point3 {
+    Point3::new(AXES[0] * p.x, AXES[1] * p.y, AXES[2] * p.z)
+}
+
+impl Pair {
+    /// `source` starts as it is, over an ellipsoid.
+    pub(crate) fn new(source: PolygonSoup) -> Self {
+        let (mesh, rest) = source.into_halfedge().unwrap();
+        let mut ellipsoid = shapes::icosphere(3);
+        ellipsoid
+            .positions
+            .iter_mut()
+            .for_each(|p| *p = on_ellipsoid(p));
+        Self {
+            triangulation: Triangulation::new(&mesh, &rest),
+            initial: rest.map(|p| Point3::from(p.coords * 0.8)),
+            rest,
+            target: TriangleSoup::new(ellipsoid).unwrap(),
+        }
+    }
+
+    pub(crate) fn input(&self) -> DrapeInput<'_> {
+        DrapeInput {
+            triangulation: &self.triangulation,
+            rest: &self.rest,
+            initial: &self.initial,
+            target: &self.target,
+            landmarks: &[],
+        }
+    }
+}
+
+/// A preset with a short run.
+pub(crate) fn short(preset: &str, n_iterations: usize) -> DrapeConfig {
+    let mut config = DrapeConfig::named(preset).unwrap();
+    config.stages.truncate(1);
+    config.stages[0].n_iterations = n_iterations;
+    config.sampling.n_samples = 400;
+    config.sampling.max_samples = 400;
+    config
+}
+
+pub(crate) fn run(
+    input: DrapeInput<'_>,
+    config: DrapeConfig,
+) -> Result<(Positions, Vec<StepReport>), DrapeError> {
+    let mut drape = Drape::new(input, config)?;
+    let mut reports = Vec::new();
+    while let Some(report) = drape.step()? {
+        reports.push(report);
+    }
+    Ok((drape.positions(), reports))
+}
