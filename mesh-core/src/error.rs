@@ -5,7 +5,9 @@
 #[non_exhaustive]
 pub enum TopologyError {
     /// A face names a vertex that is not there.
-    #[error("face {face} names vertex {vertex}, but there are {n_vertices} vertices (counted from 0)")]
+    #[error(
+        "face {face} names vertex {vertex}, but there are {n_vertices} vertices (counted from 0)"
+    )]
     VertexOutOfRange {
         /// Row of the face.
         face: usize,
@@ -27,7 +29,9 @@ pub enum TopologyError {
     #[error("there are no points")]
     NoPoints,
     /// A point cloud with some other number of normals than points.
-    #[error("{n_normals} normals for {n_points} points: give one normal per point, or none at all")]
+    #[error(
+        "{n_normals} normals for {n_points} points: give one normal per point, or none at all"
+    )]
     NormalCount {
         /// How many normals there are.
         n_normals: usize,

@@ -28,11 +28,7 @@ impl MeshPoint {
     /// Where the place is when the vertices are at `x`.
     pub fn position(&self, x: &Positions) -> Point3 {
         let terms = self.vertices.iter().zip(self.weights);
-        Point3::from(
-            terms
-                .map(|(&v, w)| x[v].coords * w)
-                .sum::<crate::Vector3>(),
-        )
+        Point3::from(terms.map(|(&v, w)| x[v].coords * w).sum::<crate::Vector3>())
     }
 
     /// The vertex that counts most.

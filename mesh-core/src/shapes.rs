@@ -148,7 +148,9 @@ pub fn cone(n: usize) -> PolygonSoup {
         let angle = std::f64::consts::TAU * k as f64 / n as f64;
         Point3::new(angle.cos(), angle.sin(), 0.0)
     });
-    let positions = std::iter::once(Point3::new(0.0, 0.0, 1.0)).chain(rim).collect();
+    let positions = std::iter::once(Point3::new(0.0, 0.0, 1.0))
+        .chain(rim)
+        .collect();
     let faces = (0..n as u32)
         .map(|k| vec![0, 1 + k, 1 + (k + 1) % n as u32])
         .collect();

@@ -139,13 +139,22 @@ fn split_polygon(polygon: &[VertexId], rest: &Positions) -> Vec<[VertexId; 3]> {
 fn planar_delaunay(polygon: &[VertexId], rest: &Positions) -> Option<Vec<[VertexId; 3]>> {
     let points: Vec<Point3> = polygon.iter().map(|&v| rest[v]).collect();
     let normal = polygon_area_vector(&points).try_normalize(f64::MIN_POSITIVE)?;
-    let axis = if normal.x.abs() < 0.7 { Vector3::x() } else { Vector3::y() };
+    let axis = if normal.x.abs() < 0.7 {
+        Vector3::x()
+    } else {
+        Vector3::y()
+    };
     let u = normal.cross(&axis).try_normalize(f64::MIN_POSITIVE)?;
     let v = normal.cross(&u);
     let size = crate::Aabb::of(&points).longest_side();
     let flat: Vec<[f64; 2]> = points
         .iter()
-        .map(|p| [(p - points[0]).dot(&u) / size, (p - points[0]).dot(&v) / size])
+        .map(|p| {
+            [
+                (p - points[0]).dot(&u) / size,
+                (p - points[0]).dot(&v) / size,
+            ]
+        })
         .collect();
 
     let mut delaunay = ConstrainedDelaunayTriangulation::<spade::Point2<f64>>::new();
@@ -171,7 +180,11 @@ fn planar_delaunay(polygon: &[VertexId], rest: &Positions) -> Option<Vec<[Vertex
         .map(lowest_first)
         .collect();
     rows.sort_unstable();
-    Some(rows.into_iter().map(|t| t.map(|row| polygon[row])).collect())
+    Some(
+        rows.into_iter()
+            .map(|t| t.map(|row| polygon[row]))
+            .collect(),
+    )
 }
 
 fn centroid(corners: [[f64; 2]; 3]) -> [f64; 2] {
@@ -216,7 +229,10 @@ mod tests {
 
     fn area(points: &[[f64; 3]]) -> f64 {
         let x: Positions = points.iter().map(|&p| Point3::from(p)).collect();
-        triangulate(points).corners(&x).map(crate::measure::triangle_area).sum()
+        triangulate(points)
+            .corners(&x)
+            .map(crate::measure::triangle_area)
+            .sum()
     }
 
     #[test]
@@ -227,7 +243,14 @@ mod tests {
 
     #[test]
     fn concave_polygon_keeps_its_area() {
-        let l_shape = [[0., 0., 0.], [2., 0., 0.01], [2., 1., 0.], [1., 1., 0.], [1., 2., -0.01], [0., 2., 0.]];
+        let l_shape = [
+            [0., 0., 0.],
+            [2., 0., 0.01],
+            [2., 1., 0.],
+            [1., 1., 0.],
+            [1., 2., -0.01],
+            [0., 2., 0.],
+        ];
         let triangles = triangulate(&l_shape);
         assert_eq!(triangles.len(), 4);
         assert!((area(&l_shape) - 3.0).abs() < 1e-3);
@@ -235,7 +258,13 @@ mod tests {
 
     #[test]
     fn self_crossing_polygon_falls_back_to_a_fan() {
-        let star = [[0., 1., 0.], [0.6, -0.8, 0.], [-0.95, 0.3, 0.], [0.95, 0.3, 0.], [-0.6, -0.8, 0.]];
+        let star = [
+            [0., 1., 0.],
+            [0.6, -0.8, 0.],
+            [-0.95, 0.3, 0.],
+            [0.95, 0.3, 0.],
+            [-0.6, -0.8, 0.],
+        ];
         assert_eq!(triangulate(&star).len(), 3);
     }
 }
