@@ -22,6 +22,8 @@ pub(crate) struct Run {
     pub(crate) draped: Positions,
     pub(crate) report: Report,
     pub(crate) history: History,
+    /// Which parts of either shape were left out, in words.
+    pub(crate) left_out: Vec<String>,
     /// Seconds of each stage.
     pub(crate) stages: Vec<(&'static str, f64)>,
     pub(crate) usage: Usage,
@@ -51,6 +53,7 @@ impl Run {
             draped: drape.positions,
             network: drape.network,
             history: drape.history,
+            left_out: drape.left_out,
             report,
             stages: clock.laps,
             usage: watch.read(),
@@ -109,6 +112,26 @@ struct Draped {
     positions: Positions,
     network: Option<NetworkMap>,
     history: History,
+    /// Which parts were left out, in words.
+    left_out: Vec<String>,
+}
+
+/// What the run takes as lying beyond the other shape.
+fn left_out(drape: &Drape<'_>) -> Vec<String> {
+    let (beyond, overlap) = (drape.beyond(), drape.overlap());
+    [
+        (overlap.target_exceeds, beyond.of_target, "target", "source"),
+        (overlap.mesh_exceeds, beyond.of_mesh, "source", "target"),
+    ]
+    .into_iter()
+    .filter(|&(is_left_out, ..)| is_left_out)
+    .map(|(_, share, one, other)| {
+        let percent = 100.0 * share;
+        format!(
+            "{percent:.0} % of the {one} lies beyond the {other} and is left out (setting overlap)"
+        )
+    })
+    .collect()
 }
 
 fn drape(pair: &Pair, settings: &Settings, initial: &Positions) -> anyhow::Result<Draped> {
@@ -120,6 +143,7 @@ fn drape(pair: &Pair, settings: &Settings, initial: &Positions) -> anyhow::Resul
         landmarks: &pair.landmarks,
     };
     let mut drape = Drape::new(input, settings.config.clone())?;
+    let left_out = left_out(&drape);
     let mut progress = Progress::start(drape.n_iterations());
     while let Some(step) = drape.step()? {
         progress.show(&step);
@@ -128,6 +152,7 @@ fn drape(pair: &Pair, settings: &Settings, initial: &Positions) -> anyhow::Resul
         positions: drape.positions(),
         network: drape.network(),
         history: progress.finish(),
+        left_out,
     })
 }
 

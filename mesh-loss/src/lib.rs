@@ -42,7 +42,7 @@ pub use fold_barrier::FoldBarrier;
 pub use landmark_distance::LandmarkDistance;
 pub use local_shape::LocalShape;
 pub use loss::Loss;
-pub use matching::{Matches, SamplingConfig, SurfaceMatch, SurfaceMatcher};
+pub use matching::{Beyond, Matches, Overlap, SamplingConfig, SurfaceMatch, SurfaceMatcher};
 pub use normal_agreement::NormalAgreement;
 pub use smoothness::Smoothness;
 pub use triangle_quality::TriangleQuality;

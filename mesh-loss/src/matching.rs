@@ -2,7 +2,7 @@
 
 use mesh_core::{
     Location, NormalSign, Point3, Positions, TargetSurface, TriangleBvh, Triangulation, UnitFrame,
-    Vector3, VertexId,
+    Vector3, VertexData, VertexId,
 };
 use rand::{Rng, RngCore};
 use rayon::prelude::*;
@@ -20,6 +20,8 @@ pub struct SurfaceMatch {
     pub normal: Option<Vector3>,
     /// How much the pair counts, 0..=1.
     pub weight: f64,
+    /// Whether the sample's closest point lies on an open boundary of the other surface.
+    pub is_on_rim: bool,
 }
 
 impl SurfaceMatch {
@@ -49,6 +51,27 @@ pub struct SamplingConfig {
     pub face_uniform: f64,
     /// Pairs count by clamp(n·n′ + `normal_bias`, 0.05, 1); none: all pairs count 1.
     pub normal_bias: Option<f64>,
+    /// Which pairs at open boundaries are left out.
+    pub overlap: Overlap,
+}
+
+/// Which surface reaches beyond the other. A place beyond has its closest point on the other's open boundary, and
+/// must not be pulled there.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub struct Overlap {
+    /// The target reaches beyond the mesh: its samples whose closest place is on the mesh's boundary are left out.
+    pub target_exceeds: bool,
+    /// The mesh reaches beyond the target: its samples whose closest point is on the target's boundary are left out.
+    pub mesh_exceeds: bool,
+}
+
+/// How much of each surface lies beyond the other, from [`SurfaceMatcher::beyond`]; shares in 0..=1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Beyond {
+    /// Share of the target's area beyond the mesh.
+    pub of_target: f64,
+    /// Share of the mesh's area beyond the target.
+    pub of_mesh: f64,
 }
 
 /// Draws samples on a moving mesh and on its target and matches each with its closest point.
@@ -59,6 +82,7 @@ pub struct SurfaceMatcher<'a> {
     target: &'a dyn TargetSurface,
     frame: UnitFrame,
     bvh: TriangleBvh,
+    boundary: Boundary,
 }
 
 impl<'a> SurfaceMatcher<'a> {
@@ -74,6 +98,36 @@ impl<'a> SurfaceMatcher<'a> {
             target,
             frame,
             bvh: TriangleBvh::new(triangulation.corners(x).collect()),
+            boundary: Boundary::new(triangulation, x.len()),
+        }
+    }
+
+    /// How much of each surface lies beyond the other, as a share of `n_samples` random places on each: their closest
+    /// point is on the other's open boundary, and farther than `distance`.
+    pub fn beyond(
+        &mut self,
+        x: &Positions,
+        n_samples: usize,
+        distance: f64,
+        rng: &mut dyn RngCore,
+    ) -> Beyond {
+        let config = SamplingConfig {
+            n_samples,
+            face_uniform: 0.0,
+            normal_bias: None,
+            overlap: Overlap::default(),
+        };
+        let all = self.resample(x, &config, rng);
+        let share = |matches: &[SurfaceMatch]| {
+            let n_beyond = matches
+                .iter()
+                .filter(|m| m.is_on_rim && m.offset(x).norm() > distance)
+                .count();
+            n_beyond as f64 / matches.len().max(1) as f64
+        };
+        Beyond {
+            of_target: share(&all.to_mesh),
+            of_mesh: share(&all.to_target),
         }
     }
 
@@ -95,6 +149,7 @@ impl<'a> SurfaceMatcher<'a> {
             target: self.target,
             frame: self.frame,
             normals: &normals,
+            boundary: &self.boundary,
             config,
         };
         Matches {
@@ -110,6 +165,7 @@ struct Side<'a> {
     target: &'a dyn TargetSurface,
     frame: UnitFrame,
     normals: &'a [Option<Vector3>],
+    boundary: &'a Boundary,
     config: &'a SamplingConfig,
 }
 
@@ -128,7 +184,11 @@ impl Side<'_> {
         places
             .iter()
             .zip(&hits)
-            .map(|(&(t, w), hit)| self.pair(t, w, self.frame.to_unit(&hit.point), &hit.location))
+            .map(|(&(t, w), hit)| SurfaceMatch {
+                is_on_rim: self.target.is_on_boundary(&hit.location),
+                ..self.pair(t, w, self.frame.to_unit(&hit.point), &hit.location)
+            })
+            .filter(|pair| !(self.config.overlap.mesh_exceeds && pair.is_on_rim))
             .collect()
     }
 
@@ -146,10 +206,15 @@ impl Side<'_> {
             .zip(&hits)
             .filter_map(|((sample, point), hit)| match hit.location {
                 Location::Triangle { index, barycentric } => {
-                    Some(self.pair(index as usize, barycentric, *point, &sample.location))
+                    let t = index as usize;
+                    Some(SurfaceMatch {
+                        is_on_rim: self.boundary.holds(t, barycentric),
+                        ..self.pair(t, barycentric, *point, &sample.location)
+                    })
                 }
                 Location::Point { .. } => None,
             })
+            .filter(|pair| !(self.config.overlap.target_exceeds && pair.is_on_rim))
             .collect()
     }
 
@@ -173,7 +238,64 @@ impl Side<'_> {
                 Some(bias) => (agreement + bias).clamp(0.05, 1.0),
                 None => 1.0,
             },
+            is_on_rim: false,
         }
+    }
+}
+
+/// The open boundary of the mesh.
+struct Boundary {
+    triangles: Vec<[VertexId; 3]>,
+    is_vertex: VertexData<bool>,
+    /// Whether the side opposite to each corner belongs to no other triangle.
+    is_side: Vec<[bool; 3]>,
+}
+
+/// A barycentric weight below this is on the side opposite to its corner.
+const ON_SIDE: f64 = 1e-9;
+
+impl Boundary {
+    fn new(triangulation: &Triangulation, n_vertices: usize) -> Self {
+        let triangles = triangulation.triangles().to_vec();
+        let side = |t: &[VertexId; 3], k: usize| {
+            let (a, b) = (t[(k + 1) % 3], t[(k + 2) % 3]);
+            (a.min(b), a.max(b))
+        };
+        let mut sides: Vec<_> = triangles
+            .iter()
+            .flat_map(|t| [0, 1, 2].map(|k| side(t, k)))
+            .collect();
+        sides.sort_unstable();
+        let is_single = |s: &(VertexId, VertexId)| {
+            let first = sides.partition_point(|other| other < s);
+            sides.get(first + 1) != Some(s)
+        };
+        let is_side: Vec<[bool; 3]> = triangles
+            .iter()
+            .map(|t| [0, 1, 2].map(|k| is_single(&side(t, k))))
+            .collect();
+        let mut is_vertex = VertexData::new(n_vertices, false);
+        for (t, open) in triangles.iter().zip(&is_side) {
+            for k in (0..3).filter(|&k| open[k]) {
+                is_vertex[t[(k + 1) % 3]] = true;
+                is_vertex[t[(k + 2) % 3]] = true;
+            }
+        }
+        Self {
+            triangles,
+            is_vertex,
+            is_side,
+        }
+    }
+
+    /// Whether the place in triangle `t` lies on the boundary.
+    fn holds(&self, t: usize, barycentric: [f64; 3]) -> bool {
+        (0..3).any(|k| {
+            let is_on_side = self.is_side[t][k] && barycentric[k] <= ON_SIDE;
+            let is_on_corner =
+                self.is_vertex[self.triangles[t][k]] && barycentric[k] >= 1.0 - ON_SIDE;
+            is_on_side || is_on_corner
+        })
     }
 }
 

@@ -1,6 +1,6 @@
 //! Every setting of a drape. Lengths are in the unit frame of the target: its longest side is 1.
 
-use mesh_loss::SamplingConfig;
+use mesh_loss::{Overlap, SamplingConfig};
 use serde::{Deserialize, Serialize};
 
 use crate::network::NetworkConfig;
@@ -22,6 +22,8 @@ pub struct DrapeConfig {
     pub angle_reference: AngleReference,
     /// How pairs are drawn.
     pub sampling: Sampling,
+    /// Whether one shape reaches beyond the other.
+    pub overlap: OverlapMode,
     /// Which share of the distances counts as worst, 0..=1.
     pub worst_share: f64,
     /// Triangles with a smaller Q_f (Eq. 4) are skinny, 0..=1.
@@ -88,6 +90,22 @@ pub enum AngleReference {
     Initial,
 }
 
+/// Whether one shape reaches beyond the other; what lies beyond is not pulled to the other's open boundary.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum OverlapMode {
+    /// Each that does so by more than a twentieth of its area in the initial shape.
+    Auto,
+    /// Neither: both shapes are whole.
+    Full,
+    /// The source covers only a part of the target, as a mask does.
+    SourcePartial,
+    /// The target covers only a part of the source, as a scan does.
+    TargetPartial,
+    /// Each has parts that the other lacks.
+    BothPartial,
+}
+
 /// How pairs of points are drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -105,7 +123,7 @@ pub struct Sampling {
 }
 
 impl Sampling {
-    pub(crate) fn at(&self, iteration: usize) -> SamplingConfig {
+    pub(crate) fn at(&self, iteration: usize, overlap: Overlap) -> SamplingConfig {
         let doublings = self
             .double_every
             .map_or(0, |every| iteration / every.max(1));
@@ -119,6 +137,7 @@ impl Sampling {
                 .min(self.max_samples.max(self.n_samples)),
             face_uniform: self.face_uniform,
             normal_bias: self.normal_bias,
+            overlap,
         }
     }
 }

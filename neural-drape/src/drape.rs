@@ -4,15 +4,25 @@ use mesh_core::{
     Landmark, Positions, TargetSurface, Triangulation, UnitFrame, Vector3, VertexData,
 };
 use mesh_loss::{
-    AreaKl, Chamfer, Conformal, CornerAngle, Flip, FoldBarrier, LandmarkDistance, LocalShape, Loss,
-    Matches, NormalAgreement, Smoothness, SurfaceMatcher, TriangleQuality, WorstDistance,
+    AreaKl, Beyond, Chamfer, Conformal, CornerAngle, Flip, FoldBarrier, LandmarkDistance,
+    LocalShape, Loss, Matches, NormalAgreement, Overlap, Smoothness, SurfaceMatcher,
+    TriangleQuality, WorstDistance,
 };
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
-use crate::config::{AngleReference, Descent, DrapeConfig, ParametrizationConfig, Weights};
+use crate::config::{
+    AngleReference, Descent, DrapeConfig, OverlapMode, ParametrizationConfig, Weights,
+};
 use crate::network::{Network, NetworkMap};
 use crate::{DrapeError, Parametrization, Vertices};
+
+/// Random places on each shape that tell how far it reaches beyond the other.
+const N_BEYOND: usize = 4000;
+/// A place counts as beyond when it is farther from the other's boundary than this share of the longest side.
+const FAR_BEYOND: f64 = 0.03;
+/// A shape of which less than this share lies beyond is taken as whole.
+const LEAST_BEYOND: f64 = 0.05;
 
 /// What is draped over what.
 #[derive(Clone, Copy)]
@@ -61,6 +71,8 @@ pub struct Drape<'a> {
     landmarks: Vec<Landmark>,
     matcher: SurfaceMatcher<'a>,
     structure: Structure<'a>,
+    beyond: Beyond,
+    overlap: Overlap,
     iteration: usize,
     n_iterations: usize,
     gradient: VertexData<Vector3>,
@@ -97,16 +109,21 @@ impl<'a> Drape<'a> {
                 Box::new(Vertices::new(input.triangulation, &initial, vertices)?)
             }
         };
+        let mut rng = ChaCha8Rng::seed_from_u64(config.seed);
+        let mut matcher = SurfaceMatcher::new(input.triangulation, &initial, input.target, frame);
+        let beyond = matcher.beyond(&initial, N_BEYOND, FAR_BEYOND, &mut rng);
         let mut drape = Self {
+            beyond,
+            overlap: overlap(config.overlap, &beyond),
             frame,
             parametrization,
             landmarks: Vec::new(),
-            matcher: SurfaceMatcher::new(input.triangulation, &initial, input.target, frame),
+            matcher,
             structure: Structure::new(&input, &initial, &config),
             iteration: 0,
             n_iterations: config.stages.iter().map(|s| s.n_iterations).sum(),
             gradient: VertexData::new(initial.len(), Vector3::zeros()),
-            rng: ChaCha8Rng::seed_from_u64(config.seed),
+            rng,
             config,
         };
         drape.set_landmarks(input.landmarks)?;
@@ -129,7 +146,7 @@ impl<'a> Drape<'a> {
         let progress = self.iteration as f64 / self.n_iterations as f64;
         self.parametrization.set_progress(progress)?;
 
-        let sampling = self.config.sampling.at(self.iteration);
+        let sampling = self.config.sampling.at(self.iteration, self.overlap);
         let x = self.parametrization.positions();
         let matches = self.matcher.resample(x, &sampling, &mut self.rng);
 
@@ -197,6 +214,16 @@ impl<'a> Drape<'a> {
     /// How many iterations the run has.
     pub fn n_iterations(&self) -> usize {
         self.n_iterations
+    }
+
+    /// How much of each shape lay beyond the other at the start.
+    pub fn beyond(&self) -> Beyond {
+        self.beyond
+    }
+
+    /// Which parts beyond are left out.
+    pub fn overlap(&self) -> Overlap {
+        self.overlap
     }
 
     fn descend(&mut self, rate: f64) -> Result<(), DrapeError> {
@@ -282,6 +309,23 @@ impl<'a> Structure<'a> {
             local_shape: LocalShape::new(t, input.rest),
             smoothness: Smoothness::new(t, initial),
         }
+    }
+}
+
+fn overlap(mode: OverlapMode, beyond: &Beyond) -> Overlap {
+    let (target_exceeds, mesh_exceeds) = match mode {
+        OverlapMode::Auto => (
+            beyond.of_target > LEAST_BEYOND,
+            beyond.of_mesh > LEAST_BEYOND,
+        ),
+        OverlapMode::Full => (false, false),
+        OverlapMode::SourcePartial => (true, false),
+        OverlapMode::TargetPartial => (false, true),
+        OverlapMode::BothPartial => (true, true),
+    };
+    Overlap {
+        target_exceeds,
+        mesh_exceeds,
     }
 }
 

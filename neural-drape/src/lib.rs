@@ -17,8 +17,8 @@ mod vertices;
 mod warp;
 
 pub use config::{
-    AngleReference, Descent, DrapeConfig, LearningRate, ParametrizationConfig, Sampling, Stage,
-    Weights,
+    AngleReference, Descent, DrapeConfig, LearningRate, OverlapMode, ParametrizationConfig,
+    Sampling, Stage, Weights,
 };
 pub use drape::{Drape, DrapeInput, StepReport, TermReport};
 pub use error::DrapeError;

@@ -5,8 +5,8 @@
 
 use crate::network::NetworkConfig;
 use crate::{
-    AngleReference, Descent, DrapeConfig, DrapeError, LearningRate, ParametrizationConfig,
-    Sampling, Stage, VerticesConfig, Weights,
+    AngleReference, Descent, DrapeConfig, DrapeError, LearningRate, OverlapMode,
+    ParametrizationConfig, Sampling, Stage, VerticesConfig, Weights,
 };
 
 /// Longest side of the authors' frame.
@@ -80,6 +80,7 @@ impl DrapeConfig {
                 face_uniform: 0.5,
                 normal_bias: Some(0.3),
             },
+            overlap: OverlapMode::Auto,
             worst_share: 0.003,
             skinny_threshold: 0.2,
             fold_limit: 0.3,
@@ -103,9 +104,9 @@ impl DrapeConfig {
         Self {
             parametrization: ParametrizationConfig::Network(NetworkConfig::standard()),
             learning_rate: LearningRate {
-                peak: 1e-3,
+                peak: 3e-3,
                 warm_up: 30,
-                decay: 0.4,
+                decay: 0.6,
             },
             ..Self::standard()
         }
@@ -156,6 +157,7 @@ impl DrapeConfig {
                 face_uniform: 0.5,
                 normal_bias: None,
             },
+            overlap: OverlapMode::Full,
             worst_share: 0.01,
             skinny_threshold: 0.1,
             fold_limit: 0.3,
