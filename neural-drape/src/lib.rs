@@ -7,6 +7,7 @@
 //! | choose how | [`DrapeConfig`] and its presets |
 //! | do to other points what was done to the source | [`Warp::new`], [`Warp::apply`] |
 
+mod check;
 mod config;
 mod drape;
 mod error;

@@ -36,33 +36,6 @@ impl DrapeConfig {
     ///
     /// Landmarks and structure lead for a third of the run; then the fit does, more and more by its worst places.
     pub fn standard() -> Self {
-        let start = Weights {
-            chamfer: AUTHORS_SIDE,
-            worst_distance: 0.1 * AUTHORS_SIDE,
-            normal_agreement: 0.2,
-            landmark: 10.0 * AUTHORS_SIDE * AUTHORS_SIDE,
-            corner_angle: 1.0,
-            area_kl: 1.0,
-            triangle_quality: 0.3,
-            flip: 1.0,
-            fold_barrier: 5.0,
-            ..Weights::ZERO
-        };
-        let fit = Weights {
-            worst_distance: 0.2 * AUTHORS_SIDE,
-            landmark: 5.0 * AUTHORS_SIDE * AUTHORS_SIDE,
-            corner_angle: 0.3,
-            area_kl: 0.3,
-            flip: 0.0,
-            ..start
-        };
-        let end = Weights {
-            worst_distance: 0.6 * AUTHORS_SIDE,
-            landmark: 10.0 * AUTHORS_SIDE * AUTHORS_SIDE,
-            triangle_quality: 0.5,
-            fold_barrier: 10.0,
-            ..fit
-        };
         Self {
             seed: 0,
             parametrization: ParametrizationConfig::Vertices(VerticesConfig::standard()),
@@ -84,18 +57,7 @@ impl DrapeConfig {
             worst_share: 0.003,
             skinny_threshold: 0.2,
             fold_limit: 0.3,
-            stages: vec![
-                Stage {
-                    n_iterations: 330,
-                    from: start,
-                    to: Weights { flip: 0.0, ..start },
-                },
-                Stage {
-                    n_iterations: 670,
-                    from: fit,
-                    to: end,
-                },
-            ],
+            stages: standard_stages(),
         }
     }
 
@@ -164,93 +126,47 @@ impl DrapeConfig {
             stages: vec![constant(1000, first), constant(500, second)],
         }
     }
+}
 
-    pub(crate) fn weights_at(&self, iteration: usize) -> Weights {
-        let mut start = 0;
-        for stage in &self.stages {
-            if iteration < start + stage.n_iterations {
-                let t = (iteration - start) as f64 / stage.n_iterations as f64;
-                return Weights::between(&stage.from, &stage.to, t);
-            }
-            start += stage.n_iterations;
-        }
-        self.stages.last().map_or(Weights::ZERO, |s| s.to)
-    }
-
-    pub(crate) fn check(&self) -> Result<(), DrapeError> {
-        let at_least_zero = "0 or more";
-        let share = "between 0 and 1";
-        let mut settings = vec![
-            (
-                "learning_rate.peak",
-                self.learning_rate.peak,
-                0.0,
-                f64::MAX,
-                at_least_zero,
-            ),
-            (
-                "learning_rate.decay",
-                self.learning_rate.decay,
-                0.0,
-                1.0,
-                share,
-            ),
-            (
-                "sampling.face_uniform",
-                self.sampling.face_uniform,
-                0.0,
-                1.0,
-                share,
-            ),
-            ("worst_share", self.worst_share, 0.0, 1.0, share),
-            ("skinny_threshold", self.skinny_threshold, 0.0, 1.0, share),
-            ("fold_limit", self.fold_limit, -1.0, 1.0, "between -1 and 1"),
-        ];
-        if let ParametrizationConfig::Vertices(v) = &self.parametrization {
-            settings.push((
-                "smoothing_start",
-                v.smoothing_start,
-                0.0,
-                f64::MAX,
-                at_least_zero,
-            ));
-            settings.push((
-                "smoothing_end",
-                v.smoothing_end,
-                0.0,
-                f64::MAX,
-                at_least_zero,
-            ));
-            settings.push(("adaptivity", v.adaptivity, 0.0, 1.0, share));
-            settings.push(("adapt_from", v.adapt_from, 0.0, 1.0, share));
-            settings.push(("n_levels", v.n_levels as f64, 1.0, 1e6, "1 or more"));
-            for beta in v.betas {
-                settings.push((
-                    "betas",
-                    beta,
-                    0.0,
-                    1.0 - f64::EPSILON,
-                    "at least 0 and below 1",
-                ));
-            }
-        }
-        let n_samples = self.sampling.n_samples as f64;
-        settings.push((
-            "sampling.n_samples",
-            n_samples,
-            1.0,
-            1e9,
-            "between 1 and 10^9",
-        ));
-        for (name, value, low, high, expected) in settings {
-            if !(low..=high).contains(&value) {
-                return Err(DrapeError::Setting {
-                    name,
-                    value,
-                    expected,
-                });
-            }
-        }
-        Ok(())
-    }
+/// Landmarks and structure lead, then the fit, at last its worst places.
+fn standard_stages() -> Vec<Stage> {
+    let start = Weights {
+        chamfer: AUTHORS_SIDE,
+        worst_distance: 0.1 * AUTHORS_SIDE,
+        normal_agreement: 0.2,
+        landmark: 10.0 * AUTHORS_SIDE * AUTHORS_SIDE,
+        corner_angle: 1.0,
+        area_kl: 1.0,
+        triangle_quality: 0.3,
+        flip: 1.0,
+        fold_barrier: 5.0,
+        ..Weights::ZERO
+    };
+    let fit = Weights {
+        worst_distance: 0.2 * AUTHORS_SIDE,
+        landmark: 5.0 * AUTHORS_SIDE * AUTHORS_SIDE,
+        corner_angle: 0.3,
+        area_kl: 0.3,
+        flip: 0.0,
+        ..start
+    };
+    let end = Weights {
+        worst_distance: 0.6 * AUTHORS_SIDE,
+        landmark: 10.0 * AUTHORS_SIDE * AUTHORS_SIDE,
+        triangle_quality: 0.5,
+        fold_barrier: 10.0,
+        ..fit
+    };
+    vec![
+        Stage {
+            n_iterations: 330,
+            from: start,
+            to: Weights { flip: 0.0, ..start },
+        },
+        Stage {
+            n_iterations: 670,
+            from: fit,
+            to: end,
+        },
+    ]
 }

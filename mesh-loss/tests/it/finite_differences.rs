@@ -42,7 +42,7 @@ pub(crate) struct Setup {
 /// A shape at rest and a random deformation of it.
 pub(crate) fn setup(shape: usize, seed: u64, amount: f64) -> Setup {
     let soup = all_shapes().swap_remove(shape);
-    let (mesh, rest) = soup.into_halfedge().unwrap();
+    let (mesh, rest) = soup.into_halfedge().expect("a shape is a mesh");
     let triangulation = Triangulation::new(&mesh, &rest);
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     let moved = rest.map(|p| p + random_vector(&mut rng) * amount);
@@ -94,7 +94,7 @@ fn assert_gradient(
 }
 
 fn matches(s: &mut Setup, normal_bias: Option<f64>) -> Matches {
-    let target = TriangleSoup::new(shapes::icosphere(2)).unwrap();
+    let target = TriangleSoup::new(shapes::icosphere(2)).expect("a sphere is a target");
     let config = SamplingConfig {
         n_samples: 40,
         face_uniform: 0.5,

@@ -20,7 +20,7 @@ pub(crate) fn on_ellipsoid(p: &Point3) -> Point3 {
 impl Pair {
     /// `source` starts as it is, over an ellipsoid.
     pub(crate) fn new(source: PolygonSoup) -> Self {
-        let (mesh, rest) = source.into_halfedge().unwrap();
+        let (mesh, rest) = source.into_halfedge().expect("a shape is a mesh");
         let mut ellipsoid = shapes::icosphere(3);
         ellipsoid
             .positions
@@ -30,7 +30,7 @@ impl Pair {
             triangulation: Triangulation::new(&mesh, &rest),
             initial: rest.map(|p| Point3::from(p.coords * 0.8)),
             rest,
-            target: TriangleSoup::new(ellipsoid).unwrap(),
+            target: TriangleSoup::new(ellipsoid).expect("an ellipsoid is a target"),
         }
     }
 
@@ -47,7 +47,7 @@ impl Pair {
 
 /// A preset with a short run.
 pub(crate) fn short(preset: &str, n_iterations: usize) -> DrapeConfig {
-    let mut config = DrapeConfig::named(preset).unwrap();
+    let mut config = DrapeConfig::named(preset).expect("a known preset");
     config.stages.truncate(1);
     config.stages[0].n_iterations = n_iterations;
     config.sampling.n_samples = 400;
