@@ -70,6 +70,18 @@ impl Triangulation {
         self.triangles.iter().map(|t| t.map(|v| x[v]))
     }
 
+    /// Every edge once, diagonals of polygons included, the lower vertex first, in order of their vertices.
+    pub fn edges(&self) -> Vec<[VertexId; 2]> {
+        let sides = self
+            .triangles
+            .iter()
+            .flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
+        let mut edges: Vec<_> = sides.map(|[a, b]| [a.min(b), a.max(b)]).collect();
+        edges.sort_unstable();
+        edges.dedup();
+        edges
+    }
+
     /// The edges that exactly two triangles share, diagonals of polygons included, in order of their vertices.
     pub fn interior_edges(&self) -> Vec<TriangulationEdge> {
         let mut sides: Vec<([VertexId; 2], usize)> = Vec::with_capacity(3 * self.len());
@@ -254,6 +266,13 @@ mod tests {
         let triangles = triangulate(&l_shape);
         assert_eq!(triangles.len(), 4);
         assert!((area(&l_shape) - 3.0).abs() < 1e-3);
+    }
+
+    #[test]
+    fn edges_are_listed_once() {
+        let quad = triangulate(&[[0., 0., 0.], [1., 0., 0.], [1., 1., 0.], [0., 1., 0.]]);
+        assert_eq!(quad.edges().len(), 5);
+        assert_eq!(quad.interior_edges().len(), 1);
     }
 
     #[test]

@@ -22,14 +22,7 @@ pub struct Smoothness {
 impl Smoothness {
     /// The term that keeps the displacement from `reference` smooth over the edges of `triangulation`.
     pub fn new(triangulation: &Triangulation, reference: &Positions) -> Self {
-        let mut edges: Vec<[VertexId; 2]> = triangulation
-            .triangles()
-            .iter()
-            .flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]])
-            .map(|[a, b]| [a.min(b), a.max(b)])
-            .collect();
-        edges.sort_unstable();
-        edges.dedup();
+        let edges = triangulation.edges();
         let mut degree = VertexData::new(reference.len(), 0.0);
         let mut length = 0.0;
         for &[a, b] in &edges {

@@ -1,6 +1,6 @@
 //! The vertices themselves as parameters, preconditioned so that a step moves them smoothly.
 
-use mesh_core::{Positions, Triangulation, Vector3, VertexData, VertexId};
+use mesh_core::{Positions, Triangulation, Vector3, VertexData};
 use mesh_operators::{CsrMatrix, SpdSolver};
 use serde::{Deserialize, Serialize};
 
@@ -65,7 +65,7 @@ impl Vertices {
         config: &VerticesConfig,
     ) -> Result<Self, DrapeError> {
         let n = initial.len();
-        let edges = unique_edges(triangulation);
+        let edges = triangulation.edges();
         let total: f64 = edges
             .iter()
             .map(|&[a, b]| (initial[a] - initial[b]).norm())
@@ -97,18 +97,6 @@ fn preconditioner(
     let t = level as f64 / (config.n_levels - 1).max(1) as f64;
     let length = config.smoothing_start.powf(1.0 - t) * config.smoothing_end.powf(t);
     CsrMatrix::identity(laplacian.nrows()) + laplacian * (length / mean_edge).powi(2)
-}
-
-fn unique_edges(triangulation: &Triangulation) -> Vec<[VertexId; 2]> {
-    let mut edges: Vec<_> = triangulation
-        .triangles()
-        .iter()
-        .flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]])
-        .map(|[a, b]| [a.min(b), a.max(b)])
-        .collect();
-    edges.sort_unstable();
-    edges.dedup();
-    edges
 }
 
 impl Parametrization for Vertices {
