@@ -36,7 +36,7 @@ impl Loss for TriangleQuality<'_> {
                 grad[v] -= g * (weight * share);
             }
         }
-        skinny.iter().map(|(_, q)| 1.0 - q).sum::<f64>() * share
+        skinny.iter().fold(0.0, |sum, (_, q)| sum + (1.0 - q)) * share
     }
 }
 

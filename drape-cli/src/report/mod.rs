@@ -196,7 +196,9 @@ fn number(value: f64) -> String {
     if value.fract() == 0.0 && value.abs() < 1e9 {
         format!("{value:.0}")
     } else {
-        format!("{value:.5}")
+        // Five digits whatever the size: a mean square is a few millionths.
+        let digits = (4.0 - value.abs().log10().floor()).clamp(0.0, 9.0) as usize;
+        format!("{value:.digits$}")
     }
 }
 
