@@ -122,14 +122,46 @@ pub fn initialize(input: InitInput<'_>, config: &InitConfig) -> Result<Initial, 
     })
 }
 
-fn check(input: &InitInput<'_>) -> Result<(), InitError> {
+/// Deforms the shape `present` of the source so that its landmarks come to their places, without an affine map.
+///
+/// A biharmonic field, pinned as in [`InitConfig::paper`], and as rigid as possible around rigid landmarks; without a
+/// landmark nothing moves. In the coordinates of `present`, those of the target.
+///
+/// Source: Mesh Draping, Interactive Mode, where landmarks are added to a result. Departures: see [`initialize`].
+///
+/// # Errors
+/// As [`initialize`].
+pub fn adjust(input: InitInput<'_>, present: &Positions) -> Result<Positions, InitError> {
+    check(&input)?;
+    check_length(&input, present)?;
+    let frame = UnitFrame::of(Aabb::of(present));
+    let stage = Stage {
+        triangulation: Triangulation::new(input.mesh, input.rest),
+        start: present.map(|p| frame.to_unit(p)),
+        config: &InitConfig::paper(),
+    };
+    let placed = InitInput {
+        rest: present,
+        ..input
+    };
+    let (deformed, _) = stage.deform(&handles(&placed, &Matrix3::identity(), &frame))?;
+    Ok(deformed.map(|p| frame.from_unit(p)))
+}
+
+fn check_length(input: &InitInput<'_>, x: &Positions) -> Result<(), InitError> {
     let n_vertices = input.mesh.n_vertices();
-    if input.rest.len() != n_vertices {
-        return Err(InitError::PositionCount {
-            n_vertices,
-            n_positions: input.rest.len(),
-        });
+    if x.len() == n_vertices {
+        return Ok(());
     }
+    Err(InitError::PositionCount {
+        n_vertices,
+        n_positions: x.len(),
+    })
+}
+
+fn check(input: &InitInput<'_>) -> Result<(), InitError> {
+    check_length(input, input.rest)?;
+    let n_vertices = input.mesh.n_vertices();
     for (landmark, l) in input.landmarks.iter().enumerate() {
         if let Some(vertex) = l.source.vertices.iter().find(|v| v.index() >= n_vertices) {
             return Err(InitError::LandmarkOutOfRange {

@@ -3,6 +3,7 @@
 //! | to | call |
 //! |---|---|
 //! | get the shape that draping starts at | [`initialize`] |
+//! | deform a result further when landmarks are added | [`adjust`] |
 //! | fit as much of an affine map as landmarks determine | [`fit_affine`] |
 //! | find landmarks that disagree with the others | [`leave_one_out_residuals`] |
 //! | spread displacements smoothly | [`biharmonic_displacement`] |
@@ -38,5 +39,7 @@ pub use affine::{
 pub use arap::{ArapScratch, ArapSolver};
 pub use biharmonic::biharmonic_displacement;
 pub use error::InitError;
-pub use initialize::{initialize, point_pairs, InitConfig, InitInput, Initial, Pinning, Spread};
+pub use initialize::{
+    adjust, initialize, point_pairs, InitConfig, InitInput, Initial, Pinning, Spread,
+};
 pub use similar::{SimilarConfig, SimilarSolver};

@@ -12,10 +12,10 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
 use crate::config::{
-    AngleReference, Descent, DrapeConfig, OverlapMode, ParametrizationConfig, Weights,
+    AngleReference, Descent, DrapeConfig, OverlapMode, ParametrizationConfig, Stage, Weights,
 };
 use crate::network::{Network, NetworkMap};
-use crate::{DrapeError, Parametrization, Vertices};
+use crate::{DrapeError, DrapeState, Parametrization, Vertices};
 
 /// Random places on each shape that tell how far it reaches beyond the other.
 const N_BEYOND: usize = 4000;
@@ -200,7 +200,73 @@ impl<'a> Drape<'a> {
         Ok(())
     }
 
-    /// The network behind the positions, as a map in the target's coordinates; none for explicit vertices.
+    /// Moves every vertex by its entry, in the target's coordinates; the optimiser keeps its state.
+    ///
+    /// Source: Mesh Draping, Interactive Mode, where landmarks that are added deform the present result.
+    ///
+    /// # Errors
+    /// Not one finite displacement per vertex; nothing moved.
+    pub fn displace(&mut self, displacements: &VertexData<Vector3>) -> Result<(), DrapeError> {
+        if displacements.len() != self.gradient.len() {
+            return Err(DrapeError::LengthMismatch {
+                what: "the displacement",
+                found: displacements.len(),
+                expected: self.gradient.len(),
+            });
+        }
+        let is_finite = |d: &Vector3| d.iter().all(|c| c.is_finite());
+        if !displacements.iter().all(is_finite) {
+            return Err(DrapeError::Diverged {
+                iteration: self.iteration,
+            });
+        }
+        let scale = self.frame.scale;
+        self.parametrization
+            .displace(&displacements.map(|d| d / scale));
+        Ok(())
+    }
+
+    /// Adds iterations to the run, with the weights that it would have ended with.
+    pub fn extend(&mut self, n_iterations: usize) {
+        if let Some(&Stage { to, .. }) = self.config.stages.last() {
+            self.config.stages.push(Stage {
+                n_iterations,
+                from: to,
+                to,
+            });
+            self.n_iterations += n_iterations;
+        }
+    }
+
+    /// What the drape has come to, to go on from later with [`Self::restore`].
+    pub fn state(&mut self) -> DrapeState {
+        DrapeState::write(|state| {
+            state.count(self.iteration);
+            state.count(self.n_iterations);
+            state.word_position(self.rng.get_word_pos());
+            self.parametrization.save(state);
+        })
+    }
+
+    /// Goes on where a drape of the same inputs and settings had come to. Landmarks stay those of this drape.
+    ///
+    /// # Errors
+    /// The state is that of another drape, or damaged; this drape is then of no more use.
+    pub fn restore(&mut self, state: &DrapeState) -> Result<(), DrapeError> {
+        let mut reader = state.reader();
+        let (iteration, n_iterations) = (reader.count()?, reader.count()?);
+        if iteration > n_iterations || n_iterations < self.n_iterations {
+            return Err(DrapeError::ForeignState);
+        }
+        self.extend(n_iterations - self.n_iterations);
+        self.iteration = iteration;
+        self.rng.set_word_pos(reader.word_position()?);
+        self.parametrization.restore(&mut reader)?;
+        reader.finish()
+    }
+
+    /// The network behind the positions, as a map in the target's coordinates; none for explicit vertices, and once
+    /// the vertices were displaced.
     pub fn network(&self) -> Option<NetworkMap> {
         let network = self.parametrization.network()?;
         Some(network.outside(&self.frame))

@@ -51,6 +51,9 @@ pub enum DrapeError {
         /// How many vertices there are.
         n_vertices: usize,
     },
+    /// A state does not belong to a drape of these inputs and settings.
+    #[error("the saved state does not belong to these inputs and settings, or is damaged; start the drape anew")]
+    ForeignState,
     /// The preconditioner could not be factored.
     #[error("the smoothing operator of the mesh could not be factored")]
     Preconditioner(#[from] mesh_operators::SolveError),

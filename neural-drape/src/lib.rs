@@ -5,6 +5,8 @@
 //! |---|---|
 //! | drape | [`Drape::new`], [`Drape::step`], [`Drape::positions`] |
 //! | choose how | [`DrapeConfig`] and its presets |
+//! | go on with other landmarks | [`Drape::set_landmarks`], [`Drape::displace`], [`Drape::extend`] |
+//! | keep a drape in progress | [`Drape::state`], [`Drape::restore`] |
 //! | do to other points what was done to the source | [`Warp::new`], [`Warp::apply`] |
 
 mod check;
@@ -14,6 +16,7 @@ mod error;
 pub mod network;
 mod parametrization;
 mod presets;
+mod state;
 mod vertices;
 mod warp;
 
@@ -24,5 +27,6 @@ pub use config::{
 pub use drape::{Drape, DrapeInput, StepReport, TermReport};
 pub use error::DrapeError;
 pub use parametrization::Parametrization;
+pub use state::{DrapeState, StateReader, StateWriter};
 pub use vertices::{Vertices, VerticesConfig};
 pub use warp::{Warp, WarpError, WarpInput};

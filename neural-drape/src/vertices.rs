@@ -4,7 +4,7 @@ use mesh_core::{Positions, Triangulation, Vector3, VertexData};
 use mesh_operators::{CsrMatrix, SpdSolver};
 use serde::{Deserialize, Serialize};
 
-use crate::{DrapeError, Parametrization};
+use crate::{DrapeError, Parametrization, StateReader, StateWriter};
 
 /// Settings of [`Vertices`].
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -135,6 +135,32 @@ impl Parametrization for Vertices {
             self.solver.refactor(&matrix)?;
         }
         Ok(())
+    }
+
+    fn displace(&mut self, displacements: &VertexData<Vector3>) {
+        for (p, d) in self.positions.iter_mut().zip(displacements) {
+            *p += d;
+        }
+    }
+
+    fn save(&mut self, state: &mut StateWriter) {
+        state.points(&self.positions);
+        state.count(self.level);
+        let adam = &self.adam;
+        state.count(adam.n_steps as usize);
+        state.real(adam.adaptivity);
+        state.vectors(adam.mean.iter().chain(&adam.mean_square));
+    }
+
+    fn restore(&mut self, state: &mut StateReader<'_>) -> Result<(), DrapeError> {
+        state.points(self.positions.iter_mut())?;
+        self.level = state.count()?.min(self.config.n_levels - 1);
+        let matrix = preconditioner(&self.laplacian, self.mean_edge, &self.config, self.level);
+        self.solver.refactor(&matrix)?;
+        let adam = &mut self.adam;
+        adam.n_steps = state.count()?.try_into().unwrap_or(i32::MAX);
+        adam.adaptivity = state.real()?;
+        state.vectors(adam.mean.iter_mut().chain(&mut adam.mean_square))
     }
 }
 

@@ -1,5 +1,6 @@
 //! Initial deformations of whole shapes.
 
+mod adjust;
 mod affine;
 mod arap;
 mod biharmonic;

@@ -18,7 +18,7 @@ use mesh_core::{Aabb, Positions, UnitFrame, Vector3, VertexData};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
-use crate::{DrapeError, Parametrization};
+use crate::{DrapeError, Parametrization, StateReader, StateWriter};
 pub(crate) use encoding::{WaveKind, Waves};
 pub(crate) use map::Layer;
 use parameters::{lock, Adam, Evaluation, Parameters};
@@ -40,6 +40,8 @@ pub struct Network {
     adam: Adam,
     evaluation: Arc<Mutex<Evaluation>>,
     progress: f64,
+    /// Whether more than the network moves the initial positions.
+    is_displaced: bool,
 }
 
 impl Network {
@@ -80,6 +82,7 @@ impl Network {
             adam: Adam::new(),
             evaluation: Arc::new(Mutex::new(Evaluation { map, pass, mask })),
             progress: 0.0,
+            is_displaced: false,
         })
     }
 
@@ -128,13 +131,42 @@ impl Parametrization for Network {
     }
 
     fn set_progress(&mut self, progress: f64) -> Result<(), DrapeError> {
-        self.progress = progress;
+        // A run that goes on hides nothing that was revealed.
+        self.progress = self.progress.max(progress);
         Ok(())
     }
 
-    /// The map from initial positions to the present ones, without what is hidden.
+    fn displace(&mut self, displacements: &VertexData<Vector3>) {
+        let moved = self.initial.iter_mut().zip(self.positions.iter_mut());
+        for ((x0, x), d) in moved.zip(displacements) {
+            *x0 += d;
+            *x += d;
+        }
+        self.is_displaced = true;
+    }
+
+    fn save(&mut self, state: &mut StateWriter) {
+        state.count(usize::from(self.is_displaced));
+        state.real(self.progress);
+        state.points(self.initial.iter().chain(&self.positions));
+        self.parameters.save(state);
+        self.adam.save(&mut self.parameters, state);
+    }
+
+    fn restore(&mut self, state: &mut StateReader<'_>) -> Result<(), DrapeError> {
+        self.is_displaced = state.count()? != 0;
+        self.progress = state.real()?;
+        let points = self.initial.iter_mut().chain(self.positions.iter_mut());
+        state.points(points)?;
+        self.parameters.restore(state)?;
+        self.adam.restore(&mut self.parameters, state)?;
+        self.evaluate();
+        Ok(())
+    }
+
+    /// The map from initial positions to the present ones, without what is hidden; none once they were displaced.
     fn network(&self) -> Option<NetworkMap> {
-        Some(lock(&self.evaluation).map.clone())
+        (!self.is_displaced).then(|| lock(&self.evaluation).map.clone())
     }
 }
 

@@ -12,6 +12,7 @@ use rand_chacha::ChaCha8Rng;
 use super::encoding::Waves;
 use super::map::{Layer, NetworkMap};
 use super::pass::Pass;
+use crate::{DrapeError, StateReader, StateWriter};
 
 type Matrix<T = NoneTape> = Tensor<(usize, usize), f32, Cpu, T>;
 
@@ -114,6 +115,26 @@ impl Parameters {
         layers.chain(&mut self.rows)
     }
 
+    /// Writes every parameter.
+    pub(super) fn save(&mut self, state: &mut StateWriter) {
+        let mut entries = Vec::new();
+        for parameter in self.tensors_mut() {
+            copy(parameter, &mut entries);
+            state.singles(&entries);
+        }
+    }
+
+    /// Reads every parameter.
+    pub(super) fn restore(&mut self, state: &mut StateReader<'_>) -> Result<(), DrapeError> {
+        let mut entries = Vec::new();
+        for parameter in self.tensors_mut() {
+            copy(parameter, &mut entries);
+            state.singles(&mut entries)?;
+            parameter.copy_from(&entries);
+        }
+        Ok(())
+    }
+
     /// dL/dθ for `gradient` = dL/d(output), three entries per point: the gradient of `Σ output · gradient`.
     pub(super) fn gradients(
         &self,
@@ -194,6 +215,35 @@ impl Adam {
             let moment1 = self.moment1.get_or_alloc_mut(parameter)?;
             let moment2 = self.moment2.get_or_alloc_mut(parameter)?;
             config.try_update(self.n_steps, parameter, moment1, moment2, gradient)?;
+        }
+        Ok(())
+    }
+}
+
+impl Adam {
+    /// Writes how far it is and its moments; where there is no memory for moments, none.
+    pub(super) fn save(&mut self, parameters: &mut Parameters, state: &mut StateWriter) {
+        state.count(self.n_steps as usize);
+        for parameter in parameters.tensors_mut() {
+            for moment in [&mut self.moment1, &mut self.moment2] {
+                if let Ok(entries) = moment.get_or_alloc_mut(parameter) {
+                    state.singles(entries.iter());
+                }
+            }
+        }
+    }
+
+    /// Reads what [`Self::save`] wrote.
+    pub(super) fn restore(
+        &mut self,
+        parameters: &mut Parameters,
+        state: &mut StateReader<'_>,
+    ) -> Result<(), DrapeError> {
+        self.n_steps = state.count()?.try_into().unwrap_or(i32::MAX);
+        for parameter in parameters.tensors_mut() {
+            for moment in [&mut self.moment1, &mut self.moment2] {
+                state.singles(moment.get_or_alloc_mut(parameter)?.iter_mut())?;
+            }
         }
         Ok(())
     }
