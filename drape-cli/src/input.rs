@@ -6,23 +6,30 @@ use anyhow::{ensure, Context as _};
 use mesh_core::bvh::closest_point_on_triangle;
 use mesh_core::io::{self, MeshFile};
 use mesh_core::{
-    FaceId, HalfedgeMesh, Landmark, Location, MeshPoint, Point3, PointCloud, PolygonSoup,
-    Positions, TargetSurface, TriangleBvh, TriangleSoup, Triangulation,
+    Aabb, FaceId, HalfedgeMesh, Landmark, Location, MeshPoint, Point3, PointCloud, PolygonSoup,
+    Positions, TargetSurface, TriangleBvh, TriangleSoup, Triangulation, VertexId, Weld,
 };
 
 use crate::landmarks;
+use crate::output::warn;
 use crate::render::Model;
+use crate::seams::{widest_gap, Seams};
 
-/// A mesh to deform: connectivity, rest positions, and its polygons as triangles.
+/// A mesh to deform: connectivity, rest positions, and its polygons as triangles. Vertices of the file that move as one
+/// are one vertex here.
 pub(crate) struct Source {
     pub(crate) mesh: HalfedgeMesh,
     pub(crate) rest: Positions,
     pub(crate) triangulation: Triangulation,
+    /// The vertices of the file, and which of them are one.
+    pub(crate) weld: Weld,
 }
 
 impl Source {
-    pub(crate) fn of_soup(soup: PolygonSoup) -> anyhow::Result<Self> {
-        let (mesh, rest) = soup.into_halfedge()?;
+    pub(crate) fn new(soup: PolygonSoup, seams: Seams) -> anyhow::Result<Self> {
+        soup.check()?;
+        let weld = seams.weld(soup);
+        let (mesh, rest) = weld.soup.clone().into_halfedge()?;
         let triangulation = Triangulation::new(&mesh, &rest);
         ensure!(
             !triangulation.is_empty(),
@@ -32,6 +39,31 @@ impl Source {
             mesh,
             rest,
             triangulation,
+            weld,
+        })
+    }
+
+    /// How many vertices the file has.
+    pub(crate) fn n_file_vertices(&self) -> usize {
+        self.weld.row_of.len()
+    }
+
+    /// The vertex that row `row` of the file is part of; none where the file has no such row.
+    pub(crate) fn vertex_at(&self, row: usize) -> Option<VertexId> {
+        let vertex = self.weld.row_of.get(row)?;
+        Some(VertexId::new(*vertex as usize))
+    }
+
+    /// One position per vertex of the file.
+    pub(crate) fn spread(&self, positions: &Positions) -> Positions {
+        Positions::from(self.weld.spread(positions.as_slice()))
+    }
+
+    /// That vertices were welded, in words.
+    pub(crate) fn seams_in_words(&self) -> Option<String> {
+        let (n_file, n) = (self.n_file_vertices(), self.mesh.n_vertices());
+        (n < n_file).then(|| {
+            format!("{n_file} vertices at {n} places: those at one place move as one (--weld)")
         })
     }
 
@@ -123,8 +155,9 @@ impl Pair {
         source: &Path,
         target: &Path,
         landmarks: Option<&Path>,
+        seams: Seams,
     ) -> anyhow::Result<Self> {
-        let (file, source) = read_source(source)?;
+        let (file, source) = read_source(source, seams)?;
         let target = read_target(target)?;
         let landmarks = match landmarks {
             Some(path) => landmarks::read(path)?.resolve(&source, &target.vertices)?,
@@ -140,10 +173,10 @@ impl Pair {
 }
 
 /// A mesh to deform and its file, to write it back.
-pub(crate) fn read_source(path: &Path) -> anyhow::Result<(MeshFile, Source)> {
+pub(crate) fn read_source(path: &Path, seams: Seams) -> anyhow::Result<(MeshFile, Source)> {
     let file = io::read_mesh(path)?;
     let source =
-        Source::of_soup(file.soup().clone()).with_context(|| path.display().to_string())?;
+        Source::new(file.soup().clone(), seams).with_context(|| path.display().to_string())?;
     Ok((file, source))
 }
 
@@ -151,17 +184,28 @@ pub(crate) fn read_target(path: &Path) -> anyhow::Result<Target> {
     Target::of_file(io::read_mesh(path)?).with_context(|| path.display().to_string())
 }
 
-/// The positions of a file that must have the vertices of another.
+/// The positions of a file that must have the vertices of another: where these are one, the first of them speaks.
 pub(crate) fn read_positions(path: &Path, source: &Source) -> anyhow::Result<Positions> {
-    let positions = io::read_soup(path)?.positions;
-    let (found, expected) = (positions.len(), source.mesh.n_vertices());
+    let positions = Positions::from(io::read_soup(path)?.positions);
+    let (found, expected) = (positions.len(), source.n_file_vertices());
     ensure!(
         found == expected,
         "{}: has {found} vertices, but the source has {expected}",
         path.display()
     );
-    Ok(Positions::from(positions))
+    let gap = widest_gap(&source.weld, &positions) / Aabb::of(positions.iter()).longest_side();
+    if gap > TORN {
+        warn(&[format!(
+            "{}: vertices that are one in the source lie up to {:.2} % of its longest side apart; the first of them counts",
+            path.display(),
+            100.0 * gap
+        )]);
+    }
+    Ok(Positions::from(source.weld.gather(positions.as_slice())))
 }
+
+/// Share of the longest side from which vertices that should be one are apart: text may be rounded.
+const TORN: f64 = 1e-5;
 
 #[cfg(test)]
 mod tests {
@@ -170,7 +214,7 @@ mod tests {
 
     #[test]
     fn a_point_finds_its_place_on_the_surface() {
-        let source = Source::of_soup(shapes::quad_sphere(4)).unwrap();
+        let source = Source::new(shapes::quad_sphere(4), Seams::EXACT).unwrap();
         let point = Point3::new(0.3, 2.0, -0.4);
         let place = source
             .closest_place(&point, None)
@@ -189,6 +233,6 @@ mod tests {
             positions: vec![Point3::origin(); 2],
             faces: vec![vec![0, 1]],
         };
-        assert!(Source::of_soup(soup).is_err());
+        assert!(Source::new(soup, Seams::EXACT).is_err());
     }
 }

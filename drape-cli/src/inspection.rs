@@ -7,11 +7,15 @@ use mesh_core::io::MeshFile;
 use mesh_core::{measure, Aabb, HalfedgeMesh, Triangulation};
 use serde::Serialize;
 
+use crate::seams::Seams;
+
 /// What [`Inspection::of`] finds.
 #[derive(Debug, Serialize)]
 pub(crate) struct Inspection {
     format: &'static str,
     vertices: usize,
+    /// Different places among the vertices: fewer where the file is split along seams. What follows is about these.
+    places: usize,
     unused_vertices: usize,
     faces: usize,
     faces_by_corners: BTreeMap<usize, usize>,
@@ -31,6 +35,9 @@ pub(crate) struct Inspection {
     groups: Vec<Named>,
     materials: Vec<Named>,
     smoothing_groups: usize,
+    morph_targets: usize,
+    skins: usize,
+    animations: usize,
     references: Vec<String>,
 }
 
@@ -42,8 +49,10 @@ struct Named {
 
 impl Inspection {
     pub(crate) fn of(file: &MeshFile) -> anyhow::Result<Self> {
-        let (soup, contents) = (file.soup(), file.contents());
-        soup.check()?;
+        let contents = file.contents();
+        file.soup().check()?;
+        let n_vertices = file.soup().positions.len();
+        let soup = &Seams::EXACT.weld(file.soup().clone()).soup;
         let mesh = HalfedgeMesh::from_faces(soup.positions.len(), &soup.faces)?;
         let positions = soup.positions.iter().copied().collect();
         let triangulation = Triangulation::new(&mesh, &positions);
@@ -66,7 +75,8 @@ impl Inspection {
         }
         Ok(Self {
             format: file.format().name(),
-            vertices: mesh.n_vertices(),
+            vertices: n_vertices,
+            places: mesh.n_vertices(),
             unused_vertices,
             faces: mesh.n_faces(),
             faces_by_corners,
@@ -93,6 +103,9 @@ impl Inspection {
             groups: named(&contents.groups),
             materials: named(&contents.materials),
             smoothing_groups: contents.n_smoothing_groups,
+            morph_targets: contents.n_morph_targets,
+            skins: contents.n_skins,
+            animations: contents.n_animations,
             references: contents.references.clone(),
         })
     }
@@ -150,9 +163,13 @@ impl Inspection {
             0
         };
         let unused = noted(n_unused, "that no face uses");
+        let split = match self.vertices - self.places {
+            0 => String::new(),
+            _ => format!(" at {} places: split along seams", self.places),
+        };
         vec![
             ("format", self.format.to_owned()),
-            ("vertices", format!("{}{unused}", self.vertices)),
+            ("vertices", format!("{}{split}{unused}", self.vertices)),
             ("faces", faces_in_words(self)),
             (
                 "box",
@@ -194,6 +211,9 @@ impl Inspection {
             ("objects", names(&self.objects)),
             ("groups", names(&self.groups)),
             ("materials", names(&self.materials)),
+            ("morph targets", count(self.morph_targets)),
+            ("skins", count(self.skins)),
+            ("animations", count(self.animations)),
             (
                 "names other files",
                 if references.is_empty() {

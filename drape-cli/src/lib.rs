@@ -17,14 +17,18 @@ mod inspection;
 mod landmarks;
 mod output;
 mod progress;
+mod reading;
 mod render;
 mod report;
 mod requirement;
 mod run;
+mod seams;
 mod settings;
 mod similarity;
 mod suite;
 mod usage;
+
+pub use reading::{read_landmarks, read_settings};
 
 use std::ffi::OsString;
 use std::process::ExitCode;

@@ -67,6 +67,11 @@ fn read(path: &Path, preset: Option<&str>) -> anyhow::Result<Settings> {
     over_preset(table, preset).with_context(|| path.display().to_string())
 }
 
+/// The settings in the text of a file.
+pub(crate) fn from_text(text: &str) -> anyhow::Result<Settings> {
+    over_preset(parse(text)?, None)
+}
+
 fn parse(text: &str) -> anyhow::Result<Table> {
     text.parse().map_err(|error: toml::de::Error| {
         let before = error
@@ -148,14 +153,10 @@ fn is_other_choice(below: &Table, above: &Table) -> bool {
 mod tests {
     use super::*;
 
-    fn settings(text: &str) -> anyhow::Result<Settings> {
-        over_preset(parse(text)?, None)
-    }
-
     #[test]
     fn a_file_changes_what_it_names_and_nothing_else() {
         let settings =
-            settings("seed = 9\n[sampling]\nn_samples = 77\n[[stages]]\nn_iterations = 5\n")
+            from_text("seed = 9\n[sampling]\nn_samples = 77\n[[stages]]\nn_iterations = 5\n")
                 .unwrap();
         let mut expected = DrapeConfig::named(DrapeConfig::PRESETS[0]).unwrap();
         expected.seed = 9;
@@ -169,7 +170,7 @@ mod tests {
     fn every_preset_survives_its_own_file() {
         for preset in DrapeConfig::PRESETS {
             let before = over_preset(Table::new(), Some(preset)).unwrap();
-            let after = settings(&to_toml(&before).unwrap()).unwrap();
+            let after = from_text(&to_toml(&before).unwrap()).unwrap();
             assert_eq!(
                 (after.preset, after.start, after.config),
                 (before.preset, before.start, before.config)
@@ -179,7 +180,7 @@ mod tests {
 
     #[test]
     fn mistakes_are_named() {
-        let error = |text: &str| format!("{:#}", settings(text).unwrap_err());
+        let error = |text: &str| format!("{:#}", from_text(text).unwrap_err());
         assert!(error("sed = 1").contains("unknown field `sed`"));
         assert!(error("[sampling]\nsamples = 1").contains("unknown field `samples`"));
         assert!(error("seed = 1\nseed 2").contains("line 2"));

@@ -21,6 +21,22 @@ impl Weld {
             .map(|&row| values[row as usize].clone())
             .collect()
     }
+
+    /// One value per vertex after the weld, from one per vertex before: that of the first vertex that became it.
+    ///
+    /// # Panics
+    /// If there is not one value per vertex.
+    pub fn gather<T: Clone>(&self, values: &[T]) -> Vec<T> {
+        assert_eq!(values.len(), self.row_of.len(), "one value per vertex");
+        let mut gathered = Vec::with_capacity(self.soup.positions.len());
+        for (value, &row) in values.iter().zip(&self.row_of) {
+            // Rows after the weld are in order of first appearance.
+            if row as usize == gathered.len() {
+                gathered.push(value.clone());
+            }
+        }
+        gathered
+    }
 }
 
 impl PolygonSoup {
@@ -140,6 +156,7 @@ mod tests {
             let weld = split.weld(0.0);
             assert_eq!(weld.soup.positions.len(), mesh.positions.len());
             assert_eq!(weld.spread(&weld.soup.positions), split.positions);
+            assert_eq!(weld.gather(&split.positions), weld.soup.positions);
             let shape = |soup: &PolygonSoup| -> Vec<Vec<Point3>> {
                 let at = |v: &u32| soup.positions[*v as usize];
                 soup.faces

@@ -3,6 +3,7 @@
 mod bad_input;
 mod commands;
 mod real_pair;
+mod seams;
 mod suite;
 mod support;
 mod transfer;

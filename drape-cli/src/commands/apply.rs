@@ -8,6 +8,7 @@ use mesh_core::Positions;
 use neural_drape::Warp;
 
 use crate::output::{check_distinct, check_mesh, say, warn};
+use crate::seams::MorphArgs;
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
@@ -18,15 +19,21 @@ pub(crate) struct Args {
     /// File to write: the mesh with its vertices moved
     #[arg(short, long, value_name = "OUT")]
     output: PathBuf,
+    #[command(flatten)]
+    morphs: MorphArgs,
 }
 
 pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
     check_mesh(&args.output)?;
     check_distinct(&args.output, &[&args.warp, &args.mesh])?;
     let warp = Warp::load(&args.warp)?;
-    let file = io::read_mesh(&args.mesh)?;
+    let mut file = io::read_mesh(&args.mesh)?;
+    file.set_morphs(args.morphs.morphs.into());
     file.check_writable(&args.output)?;
-    warn(&Vec::from_iter(file.lost_in(&args.output)));
+    let left_behind = args.morphs.left_behind(&file, &args.output);
+    warn(&Vec::from_iter(
+        left_behind.into_iter().chain(file.lost_in(&args.output)),
+    ));
     let moved = Positions::from(warp.apply(&file.soup().positions));
     file.write(&args.output, &moved)?;
     say(&format!(

@@ -8,6 +8,7 @@ use neural_drape::DrapeConfig;
 
 use super::evaluate::finish;
 use crate::output::{check_distinct, check_mesh};
+use crate::seams::{MorphArgs, WeldArgs};
 use crate::settings::SettingsArgs;
 use crate::suite::{self, stem, Method, Pair, Pool, Task};
 
@@ -29,6 +30,10 @@ pub(crate) struct Args {
     summary: PathBuf,
     #[command(flatten)]
     settings: SettingsArgs,
+    #[command(flatten)]
+    weld: WeldArgs,
+    #[command(flatten)]
+    morphs: MorphArgs,
     /// Runs at a time
     #[arg(long, value_name = "N", default_value_t = 1)]
     jobs: usize,
@@ -82,6 +87,10 @@ fn tasks(args: &Args) -> anyhow::Result<Vec<Task>> {
                 judge: None,
             },
             method: method.clone(),
+            options: vec![
+                format!("--weld={}", args.weld.weld),
+                format!("--morphs={}", args.morphs.morphs),
+            ],
             seed: args.settings.seed.unwrap_or(0),
             picture: output.with_extension("png"),
             output,

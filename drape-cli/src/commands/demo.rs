@@ -8,6 +8,7 @@ use crate::demo;
 use crate::gallery::ViewArgs;
 use crate::output::say;
 use crate::render::Up;
+use crate::seams::{MorphArgs, Morphing, Seams, WeldArgs};
 use crate::settings::SettingsArgs;
 
 #[derive(Debug, clap::Args)]
@@ -27,6 +28,10 @@ pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
         target: files.target,
         landmarks: Some(files.landmarks),
         output: name("draped.obj"),
+        weld: WeldArgs { weld: Seams::EXACT },
+        morphs: MorphArgs {
+            morphs: Morphing::Keep,
+        },
         settings: args.settings.clone(),
         report: Some(name("report.html")),
         render: Some(name("draped.png")),

@@ -10,6 +10,7 @@ use crate::landmarks::doctor;
 use crate::output::{check_distinct, check_mesh, check_writable, say, warn};
 use crate::render::{Image, View};
 use crate::run::judge;
+use crate::seams::{MorphArgs, WeldArgs};
 use crate::usage::Stopwatch;
 
 #[derive(Debug, clap::Args)]
@@ -24,6 +25,10 @@ pub(crate) struct Args {
     /// File to write: the source with its vertices moved
     #[arg(short, long, value_name = "OUT")]
     output: PathBuf,
+    #[command(flatten)]
+    weld: WeldArgs,
+    #[command(flatten)]
+    morphs: MorphArgs,
     /// How the source is brought to its landmarks
     #[arg(long, value_name = "NAME", default_value = "standard")]
     initial: Start,
@@ -50,18 +55,23 @@ pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
     if let Some(path) = &args.render {
         check_writable(path)?;
     }
-    let pair = Pair::read(&args.source, &args.target, args.landmarks.as_deref())?;
+    let landmarks = args.landmarks.as_deref();
+    let mut pair = Pair::read(&args.source, &args.target, landmarks, args.weld.weld)?;
+    pair.file.set_morphs(args.morphs.morphs.into());
     pair.file.check_writable(&args.output)?;
     let truth = args
         .truth
         .as_deref()
         .map(|path| read_positions(path, &pair.source))
         .transpose()?;
-    let warnings = doctor::examine(&pair);
+    let mut warnings = doctor::examine(&pair);
+    warnings.extend(args.morphs.left_behind(&pair.file, &args.output));
+    warnings.extend(pair.file.lost_in(&args.output));
     warn(&warnings);
     let positions = deform(&pair, args.initial)?;
     let report = judge(&pair, &positions, truth.as_ref())?;
-    pair.file.write(&args.output, &positions)?;
+    pair.file
+        .write(&args.output, &pair.source.spread(&positions))?;
     if let Some(path) = &args.render {
         let gallery = Gallery::new(&pair, &positions, args.view.up, PICTURE_SIZE);
         let row = |view| {

@@ -9,6 +9,7 @@ use crate::output::{check_writable, say};
 use crate::render::{Image, View};
 use crate::requirement::Requirements;
 use crate::run::judge;
+use crate::seams::WeldArgs;
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
@@ -24,6 +25,8 @@ pub(crate) struct Args {
     /// Mesh whose vertices are where those of the result belong
     #[arg(long, value_name = "FILE")]
     truth: Option<PathBuf>,
+    #[command(flatten)]
+    weld: WeldArgs,
     /// Print JSON
     #[arg(long)]
     json: bool,
@@ -44,7 +47,8 @@ pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
     if let Some(path) = &args.render {
         check_writable(path)?;
     }
-    let pair = Pair::read(&args.source, &args.target, args.landmarks.as_deref())?;
+    let landmarks = args.landmarks.as_deref();
+    let pair = Pair::read(&args.source, &args.target, landmarks, args.weld.weld)?;
     let draped = read_positions(&args.result, &pair.source)?;
     let truth = args
         .truth

@@ -15,6 +15,7 @@ use crate::render::{Image, View};
 use crate::report::Page;
 use crate::requirement::Requirements;
 use crate::run::Run;
+use crate::seams::{MorphArgs, WeldArgs};
 use crate::settings::SettingsArgs;
 use crate::usage::Stopwatch;
 
@@ -30,6 +31,10 @@ pub(crate) struct Args {
     /// File to write: the source with its vertices moved
     #[arg(short, long, value_name = "OUT")]
     pub(super) output: PathBuf,
+    #[command(flatten)]
+    pub(super) weld: WeldArgs,
+    #[command(flatten)]
+    pub(super) morphs: MorphArgs,
     #[command(flatten)]
     pub(super) settings: SettingsArgs,
     /// Write a page with pictures, figures, curves and settings
@@ -63,7 +68,9 @@ pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let watch = Stopwatch::start();
     check_outputs(args)?;
     let settings = args.settings.settings()?;
-    let pair = Pair::read(&args.source, &args.target, args.landmarks.as_deref())?;
+    let landmarks = args.landmarks.as_deref();
+    let mut pair = Pair::read(&args.source, &args.target, landmarks, args.weld.weld)?;
+    pair.file.set_morphs(args.morphs.morphs.into());
     pair.file.check_writable(&args.output)?;
     let truth = args
         .truth
@@ -72,6 +79,7 @@ pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
         .transpose()?;
 
     let mut warnings = doctor::examine(&pair);
+    warnings.extend(args.morphs.left_behind(&pair.file, &args.output));
     warnings.extend(pair.file.lost_in(&args.output));
     warn(&warnings);
     let run = Run::new(&pair, settings, truth.as_ref(), &watch)?;
@@ -132,7 +140,8 @@ impl Done<'_> {
         let Self {
             args, pair, run, ..
         } = self;
-        pair.file.write(&args.output, &run.draped)?;
+        let draped = pair.source.spread(&run.draped);
+        pair.file.write(&args.output, &draped)?;
         if let Some(path) = &args.warp {
             run.warp(pair)?.save(path)?;
         }
@@ -190,8 +199,10 @@ impl Done<'_> {
         let written: String = outputs.into_iter().flatten().map(wrote).collect();
         let (settings, usage) = (&run.settings, &run.usage);
         let seed = settings.config.seed;
+        let seams = self.pair.source.seams_in_words();
+        let seams = seams.map_or_else(String::new, |words| format!("{words}\n"));
         format!(
-            "{}\npreset {}, seed {seed}: {usage}\n{written}",
+            "{}\n{seams}preset {}, seed {seed}: {usage}\n{written}",
             run.report, settings.preset
         )
     }

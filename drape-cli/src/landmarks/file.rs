@@ -94,6 +94,14 @@ pub(crate) fn read(path: &Path) -> anyhow::Result<LandmarkFile> {
     })
 }
 
+/// The landmarks in the text of a landmark file, and their names if they stand beside it.
+pub(crate) fn from_text(text: &str, names: Option<&str>) -> anyhow::Result<LandmarkFile> {
+    Ok(LandmarkFile {
+        path: PathBuf::from("landmarks"),
+        entries: parse(text, names)?,
+    })
+}
+
 fn parse(text: &str, names: Option<&str>) -> anyhow::Result<Vec<Entry>> {
     let json: serde_json::Value = serde_json::from_str(text).context("is not JSON")?;
     if let Some(list) = json.get("landmarks") {
@@ -233,12 +241,13 @@ fn resolve_source(place: &SourcePlace, source: &Source) -> anyhow::Result<MeshPo
     let (mesh, rest) = (&source.mesh, &source.rest);
     match place {
         &SourcePlace::Vertex(v) => {
-            ensure!(
-                v < mesh.n_vertices(),
-                "source vertex {v} does not exist: the source has {} vertices, counted from 0",
-                mesh.n_vertices()
-            );
-            Ok(MeshPoint::vertex(VertexId::new(v)))
+            let vertex = source.vertex_at(v).ok_or_else(|| {
+                anyhow!(
+                    "source vertex {v} does not exist: the source has {} vertices, counted from 0",
+                    source.n_file_vertices()
+                )
+            })?;
+            Ok(MeshPoint::vertex(vertex))
         }
         SourcePlace::Face { face, weights } => {
             ensure!(
@@ -311,9 +320,10 @@ pub(crate) fn label(index: usize, name: Option<&str>) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::seams::Seams;
 
     fn source() -> Source {
-        Source::of_soup(mesh_core::shapes::open_grid(2, 2)).unwrap()
+        Source::new(mesh_core::shapes::open_grid(2, 2), Seams::EXACT).unwrap()
     }
 
     fn resolve(text: &str) -> anyhow::Result<Vec<Landmark>> {

@@ -3,4 +3,4 @@
 pub(crate) mod doctor;
 mod file;
 
-pub(crate) use file::{label, read};
+pub(crate) use file::{from_text, label, read};

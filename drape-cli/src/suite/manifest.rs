@@ -118,6 +118,7 @@ impl Manifest {
                     tasks.push(Task {
                         pair: pair.clone(),
                         method: method.clone(),
+                        options: Vec::new(),
                         seed,
                         output: with_extension(&name, extension),
                         picture: with_extension(&name, "png"),

@@ -24,6 +24,8 @@ pub(crate) const INITIAL: &str = "initial";
 pub(crate) struct Task {
     pub(crate) pair: Pair,
     pub(crate) method: Method,
+    /// More options of the command line.
+    pub(crate) options: Vec<String>,
     pub(crate) seed: u64,
     /// The draped mesh.
     pub(crate) output: PathBuf,

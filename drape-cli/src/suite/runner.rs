@@ -182,6 +182,7 @@ impl Pool {
         }
         option("--output", text(&task.output));
         option("--render", text(&task.picture));
+        arguments.extend(task.options.iter().cloned());
         arguments.push("--json".to_owned());
         arguments
     }

@@ -19,6 +19,12 @@ pub struct Contents {
     pub n_comments: usize,
     /// How many line and point elements there are.
     pub n_lines_and_points: usize,
+    /// How many morph targets (blend shapes) there are, those of all meshes together.
+    pub n_morph_targets: usize,
+    /// How many skins there are.
+    pub n_skins: usize,
+    /// How many animations there are.
+    pub n_animations: usize,
     /// The named objects (glTF: meshes; STL: solids), in order of first appearance.
     pub objects: Vec<NamedFaces>,
     /// The named groups of faces, in order of first appearance; a face may be in several.
@@ -36,6 +42,19 @@ impl Contents {
     pub fn has_uvs(&self) -> bool {
         self.n_uvs > 0
     }
+}
+
+/// What becomes of the morph targets (blend shapes) of a glTF file when it is written with new positions.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Morphs {
+    /// Each displacement goes through the gradient of the map at its vertex, so that an expression made for the source
+    /// becomes one of the new shape.
+    Carry,
+    /// Byte for byte as they were.
+    #[default]
+    Keep,
+    /// Removed, with their weights and what animates these.
+    Drop,
 }
 
 /// Faces under one name.
@@ -67,6 +86,7 @@ pub(super) struct NameRuns {
     named: Vec<NamedFaces>,
     row_of: HashMap<String, usize>,
     current: Vec<usize>,
+    is_current: Vec<bool>,
     since: usize,
 }
 
@@ -81,9 +101,10 @@ impl NameRuns {
                     name: name.clone(),
                     faces: Vec::new(),
                 });
+                self.is_current.push(false);
                 self.named.len() - 1
             });
-            if !self.current.contains(&row) {
+            if !std::mem::replace(&mut self.is_current[row], true) {
                 self.current.push(row);
             }
         }
@@ -91,6 +112,7 @@ impl NameRuns {
 
     fn close(&mut self, n_faces: usize) {
         for row in self.current.drain(..) {
+            self.is_current[row] = false;
             if self.since < n_faces {
                 self.named[row].faces.push(self.since..n_faces);
             }

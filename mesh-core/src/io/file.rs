@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use super::contents::{Contents, Parsed};
+use super::contents::{Contents, Morphs, Parsed};
 use super::error::{Fault, ReadError, ReadProblem, WriteError};
 use super::format::Format;
 use super::save::{check_encodes, check_finite, encode, packed_as_named, write_atomic};
@@ -18,6 +18,7 @@ pub struct MeshFile {
     bytes: Vec<u8>,
     soup: PolygonSoup,
     contents: Contents,
+    morphs: Morphs,
 }
 
 /// The points of a file, without connectivity.
@@ -95,7 +96,13 @@ impl MeshFile {
             bytes,
             soup: parsed.soup,
             contents: parsed.contents,
+            morphs: Morphs::Keep,
         })
+    }
+
+    /// What becomes of morph targets when this file is written; [`Morphs::Keep`] unless told.
+    pub fn set_morphs(&mut self, morphs: Morphs) {
+        self.morphs = morphs;
     }
 
     /// The path it was read from.
@@ -168,7 +175,7 @@ impl MeshFile {
         if !matches!(self.format, Format::Gltf | Format::Glb) {
             return Ok(());
         }
-        let found = gltf::find_unmovable(&self.bytes, &self.path);
+        let found = gltf::find_unmovable(&self.bytes, &self.path, self.morphs);
         match found.map_err(|fault| fault.of(&self.path))? {
             None => Ok(()),
             Some((feature, advice)) => Err(WriteError::Unsupported {
@@ -210,6 +217,11 @@ impl MeshFile {
         Ok(packed_as_named(path, bytes))
     }
 
+    /// Whether this file is written to `path` in the format it was read in.
+    pub fn keeps_format(&self, path: impl AsRef<Path>) -> bool {
+        self.output_format(path.as_ref()) == self.format
+    }
+
     /// The format in which this file would be written to `path`: the source's unless the extension names another.
     fn output_format(&self, path: &Path) -> Format {
         Format::of_extension(path).unwrap_or(self.format)
@@ -223,10 +235,14 @@ impl MeshFile {
             Format::Ply => ply::rewrite(bytes, contents, rest, moved),
             Format::Stl => stl::rewrite(bytes, rest, moved),
             Format::Xyz => xyz::rewrite(bytes, rest, moved),
-            Format::Gltf | Format::Glb if moved == rest.positions => Ok(bytes.clone()),
+            Format::Gltf | Format::Glb
+                if moved == rest.positions && self.morphs != Morphs::Drop =>
+            {
+                Ok(bytes.clone())
+            }
             Format::Gltf | Format::Glb => {
                 self.check_places()?;
-                gltf::rewrite(bytes, &self.path, moved)
+                gltf::rewrite(bytes, &self.path, moved, self.morphs)
             }
         };
         Ok(rewritten.map_err(|fault| fault.of(&self.path))?)
@@ -244,6 +260,9 @@ impl MeshFile {
             (contents.n_normals, "normals"),
             (contents.n_colors, "vertex colours"),
             (contents.n_lines_and_points, "line and point elements"),
+            (contents.n_morph_targets, "morph targets"),
+            (contents.n_skins, "skins"),
+            (contents.n_animations, "animations"),
             (contents.objects.len(), "object names"),
             (contents.groups.len(), "groups"),
             (contents.materials.len(), "materials"),

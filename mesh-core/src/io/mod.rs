@@ -39,7 +39,7 @@ mod stl;
 mod text;
 mod xyz;
 
-pub use contents::{Contents, NamedFaces};
+pub use contents::{Contents, Morphs, NamedFaces};
 pub use error::{Place, ReadError, ReadProblem, WriteError};
 pub use file::{read_mesh, read_points, read_soup, MeshFile, PointSet};
 pub use format::Format;

@@ -320,3 +320,39 @@ fn it_converts_to_plain_formats() {
         .unwrap()
         .contains("9 texture coordinates"));
 }
+
+#[test]
+fn two_buffers_of_one_file_are_refused() {
+    let folder = std::env::temp_dir().join(format!("mesh_core_gltf_twice_{}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    std::fs::write(folder.join("a.bin"), buffer()).unwrap();
+    let json = document("a.bin").replace(
+        r#""buffers": ["#,
+        r#""buffers": [{"byteLength": 356, "uri": "./%61.bin"}, "#,
+    );
+    let error = MeshFile::from_bytes(folder.join("a.gltf"), json.into_bytes()).unwrap_err();
+    std::fs::remove_dir_all(&folder).unwrap();
+    assert!(
+        error
+            .to_string()
+            .contains("two buffers of the one file `a.bin`"),
+        "{error}"
+    );
+}
+
+/// Work that grew with the square of the file: no scene, and so each node asked whether any other names it as a child.
+#[test]
+fn many_nodes_without_a_scene_are_read_at_once() {
+    let nodes = vec!["{}"; 200_000].join(",");
+    let scene = r#""scene": 0, "scenes": [{"nodes": [1, 0]}],"#;
+    let json = document(&data_uri())
+        .replace(scene, "")
+        .replace(
+            r#""nodes": ["#,
+            &format!(r#""nodes": [{{"mesh": 0}}, {nodes}, "#),
+        )
+        .replace(r#""children": [2]"#, r#""children": []"#);
+    let start = std::time::Instant::now();
+    assert_eq!(file("a.gltf", json).soup().faces.len(), 7);
+    assert!(start.elapsed().as_secs() < 5);
+}

@@ -277,3 +277,13 @@ fn what_cannot_be_written_leaves_the_old_file() {
     assert_eq!(names, ["out.obj"], "nothing is left behind");
     std::fs::remove_dir_all(&folder).unwrap();
 }
+
+/// Each name was looked up among all names before it on the line.
+#[test]
+fn a_line_of_many_groups_is_read_at_once() {
+    let names: String = (0..200_000).map(|k| format!(" {k}")).collect();
+    let text = format!("v 0 0 0\ng{names}\nf 1 1 1\n");
+    let start = std::time::Instant::now();
+    assert_eq!(file("a.obj", text).contents().groups.len(), 200_000);
+    assert!(start.elapsed().as_secs() < 5);
+}

@@ -3,6 +3,7 @@
 mod closest_point;
 mod io_data;
 mod io_gltf;
+mod io_morphs;
 mod io_mutations;
 mod io_obj;
 mod io_off;

@@ -1,6 +1,8 @@
 //! Numbers of a glTF accessor, wherever they stand: packed, interleaved, normalised, sparse.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap};
+use std::hash::{Hash, Hasher};
+use std::rc::Rc;
 
 use gltf::json::accessor::{ComponentType, Type};
 use gltf::json::validation::Checked;
@@ -10,7 +12,7 @@ use super::container::Container;
 use crate::io::error::{Fault, Place, ReadProblem};
 
 /// Where the elements of an accessor stand.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Layout {
     pub(super) count: usize,
     component: ComponentType,
@@ -20,6 +22,43 @@ pub(super) struct Layout {
     dense: Option<(usize, usize, usize)>,
     /// Elements that stand elsewhere: buffer and byte.
     sparse: BTreeMap<usize, (usize, usize)>,
+}
+
+impl Hash for Layout {
+    fn hash<H: Hasher>(&self, state: &mut H) {
+        (self.count, self.dense, &self.sparse).hash(state);
+    }
+}
+
+/// The layouts of a file, each found once; accessors of the very same numbers share theirs.
+#[derive(Default)]
+pub(super) struct Layouts {
+    row_of_accessor: HashMap<usize, usize>,
+    row_of: HashMap<Rc<Layout>, usize>,
+    all: Vec<Rc<Layout>>,
+}
+
+impl Layouts {
+    /// The layout of accessor number `k`, and its row among the different ones.
+    pub(super) fn of(
+        &mut self,
+        container: &Container<'_>,
+        k: usize,
+    ) -> Result<(Rc<Layout>, usize), Fault> {
+        let row = match self.row_of_accessor.get(&k) {
+            Some(&row) => row,
+            None => {
+                let layout = Rc::new(Layout::of(container, k)?);
+                let row = *self.row_of.entry(layout.clone()).or_insert(self.all.len());
+                if row == self.all.len() {
+                    self.all.push(layout);
+                }
+                self.row_of_accessor.insert(k, row);
+                row
+            }
+        };
+        Ok((self.all[row].clone(), row))
+    }
 }
 
 fn fault(accessor: usize, problem: ReadProblem) -> Fault {
@@ -131,6 +170,14 @@ impl Layout {
             self.dense
                 .map(|(buffer, start, stride)| (buffer, start + row * stride))
         })
+    }
+
+    /// The rows that stand somewhere; all others are implied zeros.
+    pub(super) fn rows(&self) -> Box<dyn Iterator<Item = usize> + '_> {
+        match self.dense {
+            Some(_) => Box::new(0..self.count),
+            None => Box::new(self.sparse.keys().copied()),
+        }
     }
 
     /// The first `N` components of element `row`.

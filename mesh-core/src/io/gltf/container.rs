@@ -1,14 +1,17 @@
 //! The parts of a glTF or GLB file: the JSON document and the buffers it names.
 
 use std::borrow::Cow;
+use std::collections::HashSet;
 use std::ops::Range;
-use std::path::{Component, Path};
+use std::path::{Component, Path, PathBuf};
 
 use base64::engine::general_purpose::STANDARD;
 use base64::Engine;
 use gltf::json::Root;
 
+use super::accessor::Layout;
 use super::json_spans::{items, member, root};
+use super::prune::Edit;
 use crate::io::error::{excerpt, Fault, ReadProblem};
 
 const MAGIC: &[u8] = b"glTF";
@@ -48,7 +51,14 @@ impl<'a> Container<'a> {
             buffers: Vec::new(),
             chunk: None,
         };
+        let mut files = HashSet::new();
         for (k, buffer) in container.root.buffers.iter().enumerate() {
+            // One large file, named often enough, would fill any memory.
+            let file = buffer.uri.as_deref().and_then(file_named);
+            if let Some(file) = file.filter(|file| !files.insert(file.clone())) {
+                let feature = format!("two buffers of the one file `{}`", file.display());
+                return Err(unsupported(feature, "save the file as GLB"));
+            }
             let data = match (&buffer.uri, &chunk) {
                 (Some(uri), _) => Cow::Owned(load(uri, path)?),
                 (None, Some(chunk)) if k == 0 => {
@@ -62,6 +72,11 @@ impl<'a> Container<'a> {
         Ok(container)
     }
 
+    /// The text of the document.
+    pub(super) fn json(&self) -> &[u8] {
+        &self.bytes[self.json.clone()]
+    }
+
     /// All bytes there are for data.
     pub(super) fn n_bytes(&self) -> usize {
         self.bytes.len() + self.buffers.iter().map(|b| b.len()).sum::<usize>()
@@ -69,9 +84,14 @@ impl<'a> Container<'a> {
 
     /// The file with new data in its buffers, and with `min` and `max` of some accessors replaced. The text of buffers
     /// that live elsewhere moves into the document.
-    pub(super) fn with(&self, buffers: &[Option<Vec<u8>>], bounds: &[Bounds]) -> Vec<u8> {
-        let json = &self.bytes[self.json.clone()];
-        let mut edits = self.bounds_edits(json, bounds);
+    pub(super) fn with(
+        &self,
+        buffers: &[Option<Vec<u8>>],
+        bounds: &[Bounds],
+        mut edits: Vec<Edit>,
+    ) -> Vec<u8> {
+        let json = self.json();
+        edits.extend(self.bounds_edits(json, bounds));
         let uris = self.array(json, "buffers");
         for (k, data) in buffers.iter().enumerate() {
             let uri = uris
@@ -98,7 +118,7 @@ impl<'a> Container<'a> {
         member(json, root(json), key).map_or_else(Vec::new, |array| items(json, array))
     }
 
-    fn bounds_edits(&self, json: &[u8], bounds: &[Bounds]) -> Vec<(Range<usize>, String)> {
+    fn bounds_edits(&self, json: &[u8], bounds: &[Bounds]) -> Vec<Edit> {
         let accessors = self.array(json, "accessors");
         let mut edits = Vec::new();
         for bound in bounds {
@@ -143,7 +163,27 @@ pub(super) struct Bounds {
     pub(super) max: [f32; 3],
 }
 
-fn edited(json: &[u8], mut edits: Vec<(Range<usize>, String)>) -> Vec<u8> {
+impl Bounds {
+    /// Those of all elements as they now stand in `buffers`; elements that are implied are zero.
+    pub(super) fn of(accessor: usize, layout: &Layout, buffers: &[Vec<u8>]) -> Self {
+        let (mut min, mut max) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
+        for row in 0..layout.count {
+            let values = match layout.slot(row) {
+                None => [0.0; 3],
+                Some((buffer, at)) => {
+                    let raw = buffers[buffer][at..at + 12].as_chunks().0;
+                    [0, 1, 2].map(|axis| f32::from_le_bytes(raw[axis]))
+                }
+            };
+            for (axis, c) in values.into_iter().enumerate() {
+                (min[axis], max[axis]) = (min[axis].min(c), max[axis].max(c));
+            }
+        }
+        Self { accessor, min, max }
+    }
+}
+
+fn edited(json: &[u8], mut edits: Vec<Edit>) -> Vec<u8> {
     edits.sort_by_key(|(span, _)| span.start);
     let mut splice = crate::io::text::Splice::new(json);
     for (span, text) in edits {
@@ -218,18 +258,26 @@ fn load(uri: &str, path: &Path) -> Result<Vec<u8>, Fault> {
             .and_then(|text| STANDARD.decode(text).ok())
             .ok_or_else(|| unsupported(shown(), advice));
     }
-    let name = percent_decoded(uri);
-    let is_beside = Path::new(&name)
-        .components()
-        .all(|c| matches!(c, Component::Normal(_) | Component::CurDir));
-    let file = path.with_file_name(&name);
-    if !is_beside || uri.contains("://") || !file.is_file() {
+    let file = file_named(uri).map(|name| path.with_file_name(name));
+    let Some(file) = file.filter(|file| file.is_file()) else {
         return Err(unsupported(
             shown(),
             "put it in the same folder, or save the file as GLB",
         ));
-    }
+    };
     std::fs::read(file).map_err(|e| Fault::whole(ReadProblem::Io(e)))
+}
+
+/// The file beside the document that `uri` names, if it names one.
+fn file_named(uri: &str) -> Option<PathBuf> {
+    if uri.starts_with("data:") || uri.contains("://") {
+        return None;
+    }
+    let name = PathBuf::from(percent_decoded(uri));
+    let parts = name.components().filter(|c| *c != Component::CurDir);
+    parts
+        .map(|c| matches!(c, Component::Normal(_)).then_some(c))
+        .collect()
 }
 
 fn percent_decoded(uri: &str) -> String {

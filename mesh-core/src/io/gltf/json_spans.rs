@@ -30,6 +30,30 @@ pub(super) fn member(json: &[u8], object: Range<usize>, key: &str) -> Option<Ran
     None
 }
 
+/// The key and value under `key` of the object that `object` spans, with one of the commas beside them.
+pub(super) fn entry(json: &[u8], object: Range<usize>, key: &str) -> Option<Range<usize>> {
+    let value = member(json, object.clone(), key)?;
+    let mut before = None;
+    let mut at = skip_blanks(json, object.start + 1);
+    loop {
+        let end = value_end(
+            json,
+            skip_blanks(json, skip_blanks(json, value_end(json, at)) + 1),
+        );
+        let next = skip_blanks(json, end);
+        if end == value.end {
+            let is_last = json.get(next) != Some(&b',');
+            return Some(match before {
+                _ if !is_last => at..skip_blanks(json, next + 1),
+                Some(before) => before..end,
+                None => at..end,
+            });
+        }
+        before = Some(end);
+        at = skip_blanks(json, next + 1);
+    }
+}
+
 /// The document's own value.
 pub(super) fn root(json: &[u8]) -> Range<usize> {
     let start = skip_blanks(json, 0);
@@ -84,6 +108,20 @@ fn string_end(json: &[u8], at: usize) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn an_entry_goes_with_one_comma() {
+        let json = br#"{ "a": 1, "b" : [2] ,"c":{}  }"#;
+        let without = |key: &str| {
+            let span = entry(json, root(json), key).unwrap();
+            String::from_utf8([&json[..span.start], &json[span.end..]].concat()).unwrap()
+        };
+        assert_eq!(without("a"), r#"{ "b" : [2] ,"c":{}  }"#);
+        assert_eq!(without("b"), r#"{ "a": 1, "c":{}  }"#);
+        assert_eq!(without("c"), r#"{ "a": 1, "b" : [2]  }"#);
+        assert_eq!(entry(json, root(json), "d"), None);
+        assert_eq!(entry(br#"{"a":1}"#, 0..7, "a"), Some(1..6));
+    }
 
     #[test]
     fn values_are_found_among_strings_and_brackets() {

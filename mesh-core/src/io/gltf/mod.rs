@@ -4,6 +4,8 @@
 mod accessor;
 mod container;
 mod json_spans;
+mod morphs;
+mod prune;
 mod scene;
 
 use std::collections::{HashMap, HashSet};
@@ -13,7 +15,7 @@ use nalgebra::{Matrix3, Matrix4};
 
 use self::container::{Bounds, Container};
 use self::scene::{Block, Scene};
-use super::contents::{polygon_area_vector, CarriedNormals, Parsed};
+use super::contents::{polygon_area_vector, CarriedNormals, Morphs, Parsed};
 use super::error::{Fault, Place, ReadProblem};
 use crate::{Point3, Vector3};
 
@@ -30,13 +32,19 @@ pub(super) fn read(bytes: &[u8], path: &Path) -> Result<Parsed, Fault> {
 pub(super) fn find_unmovable(
     bytes: &[u8],
     path: &Path,
+    morphs: Morphs,
 ) -> Result<Option<(&'static str, &'static str)>, Fault> {
     let container = Container::read(bytes, path)?;
     let scene = Scene::read(&container)?;
-    Ok(scene.blocks.iter().find_map({
-        let mut taken = HashSet::new();
-        move |block| unmovable(block, &mut taken)
-    }))
+    let mut taken = HashSet::new();
+    let found = scene
+        .blocks
+        .iter()
+        .find_map(|block| unmovable(block, &mut taken));
+    match (found, morphs) {
+        (None, Morphs::Carry) => morphs::find_uncarriable(&container, &scene),
+        _ => Ok(found),
+    }
 }
 
 fn unmovable(
@@ -76,7 +84,12 @@ fn unmovable(
 }
 
 /// The file with the vertices at `moved`: those that did not move keep their bytes.
-pub(super) fn rewrite(bytes: &[u8], path: &Path, moved: &[Point3]) -> Result<Vec<u8>, Fault> {
+pub(super) fn rewrite(
+    bytes: &[u8],
+    path: &Path,
+    moved: &[Point3],
+    morphs: Morphs,
+) -> Result<Vec<u8>, Fault> {
     let container = Container::read(bytes, path)?;
     let scene = Scene::read(&container)?;
 
@@ -89,6 +102,9 @@ pub(super) fn rewrite(bytes: &[u8], path: &Path, moved: &[Point3]) -> Result<Vec
     }
     put_normals(&mut buffers, &container, &scene, &shapes);
     put_tangents(&mut buffers, &container, &scene, &shapes);
+    if morphs == Morphs::Carry {
+        bounds.extend(morphs::carry(&mut buffers, &container, &scene, moved)?);
+    }
 
     let changed: Vec<Option<Vec<u8>>> = buffers
         .into_iter()
@@ -99,7 +115,11 @@ pub(super) fn rewrite(bytes: &[u8], path: &Path, moved: &[Point3]) -> Result<Vec
         .into_iter()
         .filter(|_| changed.iter().any(Option::is_some))
         .collect();
-    Ok(container.with(&changed, &bounds))
+    let edits = match morphs {
+        Morphs::Drop => prune::without_morphs(container.json()),
+        Morphs::Carry | Morphs::Keep => Vec::new(),
+    };
+    Ok(container.with(&changed, &bounds, edits))
 }
 
 /// All vertices in the frames of their own meshes, as read and moved.
@@ -164,22 +184,14 @@ fn put_positions(
 
 /// The bounds of the positions as they now stand in `buffers`, where they moved.
 fn new_bounds(container: &Container<'_>, block: &Block, buffers: &[Vec<u8>]) -> Vec<Bounds> {
-    let (mut min, mut max) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
-    let mut has_moved = false;
-    for row in 0..block.positions.count {
-        let Some((buffer, at)) = block.positions.slot(row) else {
-            continue;
-        };
-        let raw = &buffers[buffer][at..at + 12];
-        has_moved |= raw != &container.buffers[buffer][at..at + 12];
-        for (axis, raw) in raw.as_chunks().0.iter().enumerate() {
-            let c = f32::from_le_bytes(*raw);
-            (min[axis], max[axis]) = (min[axis].min(c), max[axis].max(c));
-        }
-    }
+    let has_moved = (0..block.positions.count).any(|row| {
+        block.positions.slot(row).is_some_and(|(buffer, at)| {
+            buffers[buffer][at..at + 12] != container.buffers[buffer][at..at + 12]
+        })
+    });
     let accessors = block.accessors.iter().filter(|_| has_moved);
     accessors
-        .map(|&accessor| Bounds { accessor, min, max })
+        .map(|&accessor| Bounds::of(accessor, &block.positions, buffers))
         .collect()
 }
 

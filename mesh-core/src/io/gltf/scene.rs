@@ -1,34 +1,45 @@
 //! The scene of a glTF file as one soup: each mesh where its node puts it.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::ops::Range;
+use std::rc::Rc;
 
-use gltf::json::mesh::{Mode, Primitive, Semantic};
+use gltf::json::mesh::{Mesh, Mode, Primitive, Semantic};
 use gltf::json::scene::Node;
 use gltf::json::validation::Checked;
 use nalgebra::{Matrix4, Quaternion, UnitQuaternion};
 
-use super::accessor::Layout;
+use super::accessor::{Layout, Layouts};
 use super::container::{unsupported, Container};
+use super::morphs::{displacements, Displaced};
 use crate::io::contents::{Contents, NamedFaces};
 use crate::io::error::{Fault, Place, ReadProblem};
 use crate::{Point3, PolygonSoup, Vector3};
 
 /// The positions of one accessor in one node, and all that moves with them.
 pub(super) struct Block {
-    node: Option<usize>,
     /// Accessors that read these very numbers.
-    pub(super) accessors: Vec<usize>,
-    pub(super) positions: Layout,
-    pub(super) normals: Option<Layout>,
-    pub(super) tangents: Option<Layout>,
+    pub(super) accessors: BTreeSet<usize>,
+    pub(super) positions: Rc<Layout>,
+    pub(super) normals: Option<Rc<Layout>>,
+    pub(super) tangents: Option<Rc<Layout>>,
+    /// The accessors with displacements of morph targets.
+    pub(super) displacements: BTreeSet<(Displaced, usize)>,
     /// From the mesh's own frame into the scene; none where they are the same.
     pub(super) to_scene: Option<Matrix4<f64>>,
     /// The vertices, as rows of the soup.
     pub(super) rows: Range<usize>,
 }
 
+/// What was found before: layouts, and the block of each node and layout of positions.
+#[derive(Default)]
+struct Known {
+    layouts: Layouts,
+    blocks: HashMap<(Option<usize>, usize), usize>,
+}
+
 /// All blocks and what they look like together.
+#[derive(Default)]
 pub(super) struct Scene {
     pub(super) blocks: Vec<Block>,
     pub(super) soup: PolygonSoup,
@@ -37,11 +48,8 @@ pub(super) struct Scene {
 
 impl Scene {
     pub(super) fn read(container: &Container<'_>) -> Result<Self, Fault> {
-        let mut scene = Self {
-            blocks: Vec::new(),
-            soup: PolygonSoup::default(),
-            contents: Contents::default(),
-        };
+        let mut scene = Self::default();
+        let mut known = Known::default();
         let mut names = Names::default();
         for (node, mesh, to_scene) in shown_meshes(container) {
             let first_face = scene.soup.faces.len();
@@ -50,7 +58,7 @@ impl Scene {
             };
             for primitive in &shown.primitives {
                 let first = scene.soup.faces.len();
-                scene.add_primitive(container, primitive, node, to_scene)?;
+                scene.add_primitive(container, primitive, (node, to_scene), &mut known)?;
                 let material = primitive.material.and_then(|m| {
                     let name = container.root.materials.get(m.value())?.name.clone();
                     Some((
@@ -67,6 +75,7 @@ impl Scene {
                         .push(first..scene.soup.faces.len());
                 }
             }
+            scene.contents.n_morph_targets += n_targets(shown);
             let name = shown.name.clone().unwrap_or_else(|| format!("mesh {mesh}"));
             let faces = first_face..scene.soup.faces.len();
             names
@@ -76,6 +85,8 @@ impl Scene {
                 .1
                 .push(faces);
         }
+        scene.contents.n_skins = container.root.skins.len();
+        scene.contents.n_animations = container.root.animations.len();
         scene.contents.objects = Names::list(names.meshes);
         scene.contents.materials = Names::list(names.materials);
         Ok(scene)
@@ -85,8 +96,8 @@ impl Scene {
         &mut self,
         container: &Container<'_>,
         primitive: &Primitive,
-        node: Option<usize>,
-        to_scene: Option<Matrix4<f64>>,
+        (node, to_scene): (Option<usize>, Option<Matrix4<f64>>),
+        known: &mut Known,
     ) -> Result<(), Fault> {
         let attribute = |semantic| {
             primitive
@@ -97,20 +108,18 @@ impl Scene {
         let Some(accessor) = attribute(Semantic::Positions) else {
             return Ok(());
         };
-        let positions = Layout::of(container, accessor)?;
-        let known = self
-            .blocks
-            .iter()
-            .rposition(|b| b.node == node && b.positions == positions);
-        let block = match known {
+        let (positions, layout) = known.layouts.of(container, accessor)?;
+        let found = known.blocks.get(&(node, layout)).copied();
+        let block = match found {
             Some(block) => block,
-            None => self.add_block(container, node, positions, to_scene)?,
+            None => self.add_block(container, positions, to_scene)?,
         };
-        let vector = |semantic, n| -> Result<Option<Layout>, Fault> {
-            let layout = attribute(semantic)
-                .map(|a| Layout::of(container, a))
-                .transpose()?;
-            Ok(layout.filter(|l| l.has_components(n) && l.count == self.blocks[block].rows.len()))
+        known.blocks.insert((node, layout), block);
+        let n_rows = self.blocks[block].rows.len();
+        let mut vector = |semantic, n| -> Result<Option<Rc<Layout>>, Fault> {
+            let layout = attribute(semantic).map(|a| known.layouts.of(container, a));
+            let layout = layout.transpose()?.map(|(layout, _)| layout);
+            Ok(layout.filter(|l| l.has_components(n) && l.count == n_rows))
         };
         let (normals, tangents) = (
             vector(Semantic::Normals, 3)?,
@@ -123,10 +132,8 @@ impl Scene {
 
         let block = &mut self.blocks[block];
         let rows = block.rows.clone();
-        if !block.accessors.contains(&accessor) {
-            block.accessors.push(accessor);
-        }
-        if known.is_none() {
+        block.accessors.insert(accessor);
+        if found.is_none() {
             let count = |is_there: bool| if is_there { rows.len() } else { 0 };
             self.contents.n_uvs += count(has_uvs.is_some());
             self.contents.n_colors += count(has_colors.is_some());
@@ -134,14 +141,14 @@ impl Scene {
         }
         block.normals = block.normals.take().or(normals);
         block.tangents = block.tangents.take().or(tangents);
+        block.displacements.extend(displacements(primitive));
         self.add_faces(container, primitive, rows)
     }
 
     fn add_block(
         &mut self,
         container: &Container<'_>,
-        node: Option<usize>,
-        positions: Layout,
+        positions: Rc<Layout>,
         to_scene: Option<Matrix4<f64>>,
     ) -> Result<usize, Fault> {
         if !positions.has_components(3) {
@@ -169,11 +176,11 @@ impl Scene {
             self.soup.positions.push(p);
         }
         self.blocks.push(Block {
-            node,
-            accessors: Vec::new(),
+            accessors: BTreeSet::new(),
             positions,
             normals: None,
             tangents: None,
+            displacements: BTreeSet::new(),
             to_scene,
             rows: first..self.soup.positions.len(),
         });
@@ -205,6 +212,13 @@ impl Scene {
                 ))
             }
         };
+        if matches!(
+            mode,
+            Mode::Points | Mode::Lines | Mode::LineLoop | Mode::LineStrip
+        ) {
+            self.contents.n_lines_and_points += 1;
+            return Ok(());
+        }
         let corners = match primitive.indices {
             Some(accessor) => indices(container, accessor.value(), &rows)?,
             None => (rows.start as u32..rows.end as u32).collect(),
@@ -227,12 +241,16 @@ impl Scene {
                         .map(|side| vec![corners[0], side[0], side[1]]),
                 );
             }
-            Mode::Points | Mode::Lines | Mode::LineLoop | Mode::LineStrip => {
-                self.contents.n_lines_and_points += 1
-            }
+            Mode::Points | Mode::Lines | Mode::LineLoop | Mode::LineStrip => {}
         }
         Ok(())
     }
+}
+
+/// How many morph targets a mesh has: all its primitives have as many.
+fn n_targets(mesh: &Mesh) -> usize {
+    let targets = mesh.primitives.iter().filter_map(|p| p.targets.as_ref());
+    targets.map(Vec::len).max().unwrap_or(0)
 }
 
 /// Names by row in the document, with their faces.
@@ -317,9 +335,7 @@ fn scene_transforms(container: &Container<'_>) -> Vec<Option<Matrix4<f64>>> {
     let scene = root.scene.map_or(0, |s| s.value());
     let tops: Vec<usize> = match root.scenes.get(scene) {
         Some(scene) => scene.nodes.iter().map(|n| n.value()).collect(),
-        None => (0..root.nodes.len())
-            .filter(|&k| !is_child(&root.nodes, k))
-            .collect(),
+        None => tops(&root.nodes),
     };
     let mut transforms = vec![None; root.nodes.len()];
     let mut open: Vec<(usize, Matrix4<f64>)> =
@@ -336,11 +352,15 @@ fn scene_transforms(container: &Container<'_>) -> Vec<Option<Matrix4<f64>>> {
     transforms
 }
 
-fn is_child(nodes: &[Node], k: usize) -> bool {
-    nodes
-        .iter()
-        .flat_map(|n| n.children.iter().flatten())
-        .any(|child| child.value() == k)
+/// The nodes that are no other's child.
+fn tops(nodes: &[Node]) -> Vec<usize> {
+    let mut is_child = vec![false; nodes.len()];
+    for child in nodes.iter().flat_map(|n| n.children.iter().flatten()) {
+        if let Some(is_child) = is_child.get_mut(child.value()) {
+            *is_child = true;
+        }
+    }
+    (0..nodes.len()).filter(|&k| !is_child[k]).collect()
 }
 
 fn local_transform(node: &Node) -> Matrix4<f64> {
