@@ -160,8 +160,14 @@ impl CarriedNormals {
         if rest == moved {
             return None;
         }
-        moved.try_normalize(f64::MIN_POSITIVE)
+        unit(moved)
     }
+}
+
+/// `v / |v|`; none where v is zero or its length is more than a number can hold.
+pub(super) fn unit(v: Vector3) -> Option<Vector3> {
+    v.try_normalize(f64::MIN_POSITIVE)
+        .filter(|n| n.iter().all(|c| c.is_finite()))
 }
 
 /// Twice the area of a polygon times its normal: `Σ (pᵢ − p₀) × (pᵢ₊₁ − p₀)`.
@@ -196,12 +202,16 @@ mod tests {
     #[test]
     fn a_normal_keeps_its_side_and_its_text_where_nothing_moved() {
         let up = Vector3::z();
-        let mut carried = CarriedNormals::new(vec![up, -up, up]);
+        let mut carried = CarriedNormals::new(vec![up, -up, up, up]);
         for row in [0, 1] {
             carried.add_corner(row, [2.0 * up, 3.0 * Vector3::x()]);
         }
         carried.add_corner(2, [up, up]);
         carried.add_corner(99, [up, up]);
+        // Areas of coordinates near the largest number: NaN is not equal to itself, yet nothing moved.
+        let huge = Vector3::new(f64::NAN, f64::INFINITY, 0.0);
+        carried.add_corner(3, [huge, huge]);
+        assert_eq!(carried.changed(3), None);
         assert_eq!(carried.changed(0), Some(Vector3::x()));
         assert_eq!(carried.changed(1), Some(-Vector3::x()));
         assert_eq!(carried.changed(2), None);

@@ -5,6 +5,8 @@ use std::fmt;
 use std::io;
 use std::path::{Path, PathBuf};
 
+use crate::TopologyError;
+
 /// A file that could not be read: which, where in it, and why.
 #[derive(Debug)]
 pub struct ReadError {
@@ -197,9 +199,43 @@ pub enum WriteError {
         /// Row of the vertex.
         vertex: usize,
     },
+    /// A face that names a vertex that is not there.
+    #[error("{}: cannot be written", path.display())]
+    Faces {
+        /// The file.
+        path: PathBuf,
+        /// Which face.
+        #[source]
+        source: TopologyError,
+    },
     /// The source no longer reads as it did.
     #[error(transparent)]
     Source(#[from] ReadError),
+}
+
+/// What the writer of a format returns: it does not know the file's name.
+#[derive(Debug)]
+pub(super) enum Unwritable {
+    /// A vertex whose position the format cannot hold.
+    Vertex(usize),
+    Faces(TopologyError),
+}
+
+impl From<TopologyError> for Unwritable {
+    fn from(error: TopologyError) -> Self {
+        Self::Faces(error)
+    }
+}
+
+impl Unwritable {
+    /// The error with the name of the file that was to be written.
+    pub(super) fn at(self, path: &Path) -> WriteError {
+        let path = path.to_owned();
+        match self {
+            Self::Vertex(vertex) => WriteError::NotFinite { path, vertex },
+            Self::Faces(source) => WriteError::Faces { path, source },
+        }
+    }
 }
 
 /// What a reader of one format returns: it does not know the file's name.

@@ -3,11 +3,12 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use super::contents::{Contents, Morphs, Parsed};
+use super::contents::{unit, Contents, Morphs, Parsed};
 use super::error::{Fault, ReadError, ReadProblem, WriteError};
 use super::format::Format;
-use super::save::{check_encodes, check_finite, encode, packed_as_named, write_atomic};
-use super::{gltf, gzip, obj, off, ply, stl, xyz};
+use super::save::{check_finite, encode, packed_as_named, write_atomic};
+use super::uvs::CornerUvs;
+use super::{conversion, gltf, gzip, obj, off, ply, stl, xyz};
 use crate::{Point3, PolygonSoup, Positions, Vector3};
 
 /// A mesh file in memory, with everything needed to write it back with new positions.
@@ -141,7 +142,7 @@ impl MeshFile {
             Format::Gltf | Format::Glb => gltf::vertex_normals(&self.bytes, &self.path),
         }?;
         for n in &mut normals {
-            *n = n.try_normalize(f64::MIN_POSITIVE).unwrap_or_default();
+            *n = unit(*n).unwrap_or_default();
         }
         Some(normals)
     }
@@ -166,7 +167,7 @@ impl MeshFile {
         let path = path.as_ref();
         match self.output_format(path) {
             format if format == self.format => self.check_places(),
-            format => check_encodes(path, format),
+            _ => Ok(()),
         }
     }
 
@@ -212,6 +213,7 @@ impl MeshFile {
                     positions: x.as_slice().to_vec(),
                     faces: self.soup.faces.clone(),
                 },
+                self.corner_uvs().as_ref(),
             )?,
         };
         Ok(packed_as_named(path, bytes))
@@ -248,39 +250,25 @@ impl MeshFile {
         Ok(rewritten.map_err(|fault| fault.of(&self.path))?)
     }
 
+    /// The texture coordinates that can go into a file of another format.
+    fn corner_uvs(&self) -> Option<CornerUvs> {
+        match self.format {
+            Format::Obj => obj::corner_uvs(&self.bytes),
+            Format::Gltf | Format::Glb => {
+                let uvs = gltf::vertex_uvs(&self.bytes, &self.path)?;
+                Some(CornerUvs::of_vertices(uvs, &self.soup))
+            }
+            Format::Off | Format::Ply | Format::Stl | Format::Xyz => None,
+        }
+    }
+
     /// What would be lost if this file were written to `path`, in words; none if all is kept.
     pub fn lost_in(&self, path: impl AsRef<Path>) -> Option<String> {
         let format = self.output_format(path.as_ref());
         if format == self.format {
             return None;
         }
-        let contents = &self.contents;
-        let counts = [
-            (contents.n_uvs, "texture coordinates"),
-            (contents.n_normals, "normals"),
-            (contents.n_colors, "vertex colours"),
-            (contents.n_lines_and_points, "line and point elements"),
-            (contents.n_morph_targets, "morph targets"),
-            (contents.n_skins, "skins"),
-            (contents.n_animations, "animations"),
-            (contents.objects.len(), "object names"),
-            (contents.groups.len(), "groups"),
-            (contents.materials.len(), "materials"),
-            (contents.n_smoothing_groups, "smoothing groups"),
-            (contents.n_comments, "comments"),
-        ];
-        let lost: Vec<String> = counts
-            .iter()
-            .filter(|(n, _)| *n > 0)
-            .map(|(n, what)| format!("{n} {what}"))
-            .collect();
-        let (from, to) = (self.format.name(), format.name());
-        (!lost.is_empty()).then(|| {
-            format!(
-                "from {from} to {to}, these are not kept: {}",
-                lost.join(", ")
-            )
-        })
+        conversion::lost(self.format, format, &self.soup, &self.contents)
     }
 }
 

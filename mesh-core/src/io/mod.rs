@@ -22,10 +22,11 @@
 //! | glTF, GLB | the scene's meshes where their nodes put them; packed, interleaved, normalised and sparse data | POSITION, NORMAL, TANGENT, and the bounds of POSITION |
 //! | XYZ | points and perhaps normals, between blanks, commas or semicolons | the first three columns |
 //!
-//! The format is told by content first, by extension second, and any file may be packed with gzip. OBJ, OFF and PLY can
-//! be written from any other format; [`MeshFile::lost_in`] tells what such a conversion drops.
+//! The format is told by content first, by extension second, and any file may be packed with gzip. Every format can be
+//! written from any other; [`MeshFile::lost_in`] tells what such a conversion does not keep.
 
 mod contents;
+mod conversion;
 mod error;
 mod file;
 mod format;
@@ -37,6 +38,8 @@ mod ply;
 mod save;
 mod stl;
 mod text;
+mod triangles;
+mod uvs;
 mod xyz;
 
 pub use contents::{Contents, Morphs, NamedFaces};

@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 use super::contents::{polygon_area_vector, CarriedNormals, Contents, NameRuns, Parsed};
 use super::error::{excerpt, Fault, ReadProblem};
 use super::text::{integer, number, push_text, Cursor, Field, Splice};
+use super::uvs::CornerUvs;
 use crate::{Point3, PolygonSoup, Vector3};
 
 /// A statement: its keyword, with the cursor standing behind it.
@@ -172,6 +173,7 @@ fn row(index: i64, n: usize) -> Option<usize> {
 /// A corner of a face, as the file counts.
 struct Corner {
     vertex: i64,
+    uv: Option<i64>,
     normal: Option<i64>,
 }
 
@@ -182,6 +184,7 @@ impl Corner {
         let Some(slash) = slash else {
             return Some(Self {
                 vertex,
+                uv: None,
                 normal: None,
             });
         };
@@ -190,8 +193,8 @@ impl Corner {
             None | Some(b"") => Some(None),
             Some(text) => integer(text).map(Some),
         };
-        let (_uv, normal, nothing) = (other()?, other()?, other()?);
-        nothing.is_none().then_some(Self { vertex, normal })
+        let (uv, normal, nothing) = (other()?, other()?, other()?);
+        nothing.is_none().then_some(Self { vertex, uv, normal })
     }
 }
 
@@ -301,16 +304,48 @@ pub(super) fn vertex_normals(bytes: &[u8], soup: &PolygonSoup) -> Option<Vec<Vec
     any.then_some(sums)
 }
 
+/// The texture coordinates that corners name; none where no corner does.
+pub(super) fn corner_uvs(bytes: &[u8]) -> Option<CornerUvs> {
+    let mut uvs = CornerUvs {
+        rows: Vec::new(),
+        faces: Vec::new(),
+    };
+    each_statement(bytes, |keyword, cursor| match keyword {
+        b"vt" => {
+            let mut coordinate = || number(cursor.field()?.text).filter(|x| x.is_finite());
+            uvs.rows.push([(); 2].map(|()| coordinate().unwrap_or(0.0)));
+        }
+        b"f" | b"fo" => {
+            let n = uvs.rows.len();
+            let corner = |field: Field<'_>| {
+                let index = Corner::parse(field.text)?.uv?;
+                u32::try_from(row(index, n)?).ok()
+            };
+            let corners = std::iter::from_fn(|| cursor.field()).map(corner);
+            uvs.faces.push(corners.collect());
+        }
+        _ => {}
+    });
+    let any = uvs.faces.iter().flatten().any(Option::is_some);
+    any.then_some(uvs)
+}
+
 /// A new file of `soup`.
-pub(super) fn write(soup: &PolygonSoup) -> Vec<u8> {
+pub(super) fn write(soup: &PolygonSoup, uvs: Option<&CornerUvs>) -> Vec<u8> {
     let mut out = Vec::with_capacity(64 * soup.positions.len());
     for p in &soup.positions {
         push_text(&mut out, format_args!("v {} {} {}\n", p.x, p.y, p.z));
     }
-    for face in &soup.faces {
+    for [u, v] in uvs.iter().flat_map(|uvs| &uvs.rows) {
+        push_text(&mut out, format_args!("vt {u} {v}\n"));
+    }
+    for (face, corners) in soup.faces.iter().enumerate() {
         out.push(b'f');
-        for &v in face {
+        for (corner, &v) in corners.iter().enumerate() {
             push_text(&mut out, format_args!(" {}", u64::from(v) + 1));
+            if let Some(row) = uvs.and_then(|uvs| uvs.row(face, corner)) {
+                push_text(&mut out, format_args!("/{}", u64::from(row) + 1));
+            }
         }
         out.push(b'\n');
     }

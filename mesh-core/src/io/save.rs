@@ -7,10 +7,11 @@ use std::sync::atomic::{AtomicU32, Ordering};
 
 use super::error::WriteError;
 use super::format::Format;
-use super::{gzip, obj, off, ply};
+use super::uvs::CornerUvs;
+use super::{gltf, gzip, obj, off, ply, stl, xyz};
 use crate::PolygonSoup;
 
-const WRITABLE: &str = ".obj, .off or .ply, each perhaps with .gz";
+const KNOWN: &str = ".obj, .ply, .off, .stl, .glb, .gltf or .xyz, each perhaps with .gz";
 
 /// Writes a new file of `soup`, in the format that the extension of `path` names.
 ///
@@ -24,41 +25,39 @@ const WRITABLE: &str = ".obj, .off or .ply, each perhaps with .gz";
 /// ```
 ///
 /// # Errors
-/// An unknown extension, a coordinate that is not finite, or a file that cannot be written.
+/// An unknown extension, a coordinate that is not finite, a face that names a vertex that is not there where faces
+/// become triangles, or a file that cannot be written.
 pub fn write_soup(path: impl AsRef<Path>, soup: &PolygonSoup) -> Result<(), WriteError> {
     let path = path.as_ref();
     let format = Format::of_extension(path).ok_or_else(|| unknown_format(path))?;
     check_finite(path, &soup.positions)?;
-    let bytes = encode(path, format, soup)?;
+    let bytes = encode(path, format, soup, None)?;
     write_atomic(path, &packed_as_named(path, bytes))
 }
 
-/// A new file of `soup`, to be called `path`.
+/// A new file of `soup`, to be called `path`, with texture coordinates where the format has them.
 pub(super) fn encode(
     path: &Path,
     format: Format,
     soup: &PolygonSoup,
+    uvs: Option<&CornerUvs>,
 ) -> Result<Vec<u8>, WriteError> {
-    check_encodes(path, format)?;
-    Ok(match format {
-        Format::Off => off::write(soup),
-        Format::Ply => ply::write(soup),
-        _ => obj::write(soup),
-    })
-}
-
-/// Whether new files of a format are written.
-pub(super) fn check_encodes(path: &Path, format: Format) -> Result<(), WriteError> {
-    match format {
-        Format::Obj | Format::Off | Format::Ply => Ok(()),
-        _ => Err(unknown_format(path)),
-    }
+    let encoded = match format {
+        Format::Obj => Ok(obj::write(soup, uvs)),
+        Format::Off => Ok(off::write(soup)),
+        Format::Ply => Ok(ply::write(soup)),
+        Format::Xyz => Ok(xyz::write(&soup.positions)),
+        Format::Stl => stl::write(soup),
+        Format::Gltf => gltf::write_gltf(soup, uvs),
+        Format::Glb => gltf::write_glb(soup, uvs),
+    };
+    encoded.map_err(|unwritable| unwritable.at(path))
 }
 
 fn unknown_format(path: &Path) -> WriteError {
     WriteError::UnknownFormat {
         path: path.to_owned(),
-        known: WRITABLE,
+        known: KNOWN,
     }
 }
 

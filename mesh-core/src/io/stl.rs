@@ -1,9 +1,10 @@
 //! STL, text and binary: triangles with their own corners, welded where they are equal. Written back triangle by
 //! triangle; only corners and facet normals differ.
 
-use super::contents::{polygon_area_vector, Contents, NameRuns, Parsed};
-use super::error::{excerpt, Fault, Place, ReadProblem};
+use super::contents::{polygon_area_vector, unit, Contents, NameRuns, Parsed};
+use super::error::{excerpt, Fault, Place, ReadProblem, Unwritable};
 use super::text::{number, Cursor, Field, Splice};
+use super::triangles::Triangles;
 use crate::weld::weld_points;
 use crate::{Point3, PolygonSoup, Vector3};
 
@@ -218,7 +219,7 @@ impl New<'_> {
             return None;
         }
         let area = polygon_area_vector(self.moved, corners);
-        Some(area.try_normalize(f64::MIN_POSITIVE).unwrap_or_default())
+        Some(unit(area).unwrap_or_default())
     }
 }
 
@@ -271,6 +272,34 @@ fn rewrite_binary(bytes: &[u8], new: &New<'_>) -> Result<Vec<u8>, Fault> {
                     put(row, 1 + k, axis, x)?;
                 }
             }
+        }
+    }
+    Ok(out)
+}
+
+/// A new binary file of `soup`.
+pub(super) fn write(soup: &PolygonSoup) -> Result<Vec<u8>, Unwritable> {
+    let triangles = Triangles::of(soup)?;
+    let n = triangles.corners.len();
+    let mut out = vec![0; BINARY_HEADER];
+    // Not "solid": that is how a text begins.
+    out[..10].copy_from_slice(b"binary STL");
+    out[80..84].copy_from_slice(&(n as u32).to_le_bytes());
+    for (&face, corners) in triangles.faces.iter().zip(&triangles.corners) {
+        let vertices = corners.map(|corner| soup.faces[face][corner]);
+        let normal = unit(polygon_area_vector(&soup.positions, &vertices)).unwrap_or_default();
+        let points = vertices.map(|v| soup.positions[v as usize].coords);
+        for vector in std::iter::once(&normal).chain(&points) {
+            vector
+                .iter()
+                .for_each(|&c| out.extend_from_slice(&(c as f32).to_le_bytes()));
+        }
+        out.extend_from_slice(&[0; 2]);
+        if let Some(k) = points
+            .iter()
+            .position(|p| p.iter().any(|&c| !(c as f32).is_finite()))
+        {
+            return Err(Unwritable::Vertex(vertices[k] as usize));
         }
     }
     Ok(out)

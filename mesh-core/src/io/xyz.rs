@@ -3,7 +3,7 @@
 
 use super::contents::{Contents, Parsed};
 use super::error::Fault;
-use super::text::{integer, number, Cursor, Field, Splice};
+use super::text::{integer, number, push_text, Cursor, Field, Splice};
 use crate::{Point3, PolygonSoup, Vector3};
 
 /// How far the length of a row of three columns may be from 1 for them to be normals: text is rounded.
@@ -116,4 +116,13 @@ pub(super) fn rewrite(
         Ok(())
     })?;
     Ok(splice.finish())
+}
+
+/// A new file of points.
+pub(super) fn write(points: &[Point3]) -> Vec<u8> {
+    let mut out = Vec::with_capacity(48 * points.len());
+    for p in points {
+        push_text(&mut out, format_args!("{} {} {}\n", p.x, p.y, p.z));
+    }
+    out
 }

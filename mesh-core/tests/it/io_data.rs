@@ -82,5 +82,13 @@ fn every_mesh_is_converted_to_every_format() {
             let other = file(name, read.to_bytes(name, &x).unwrap());
             assert_eq!(other.soup(), read.soup(), "{} as {name}", path.display());
         }
+        for name in ["other.glb", "other.gltf", "other.stl"] {
+            let other = file(name, read.to_bytes(name, &x).unwrap());
+            let n_triangles: usize = read.soup().faces.iter().map(|f| f.len() - 2).sum();
+            let n_places = other.soup().weld(0.0).soup.positions.len();
+            let found = (other.soup().faces.len(), n_places);
+            let expected = (n_triangles, read.soup().positions.len());
+            assert_eq!(found, expected, "{} as {name}", path.display());
+        }
     }
 }

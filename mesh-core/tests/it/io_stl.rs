@@ -115,15 +115,20 @@ fn faults() {
 }
 
 #[test]
-fn nothing_else_becomes_stl() {
-    let read = file("a.obj", "v 0 0 0\nf 1 1 1\n");
-    assert!(read.check_writable("a.stl").is_err());
-    assert!(read.to_bytes("a.stl", &rest(&read)).is_err());
-    assert!(read.check_writable("a.ply").is_ok());
+fn it_converts_to_and_from_others() {
     let stl = MeshFile::from_bytes("a.stl", TEXT.into()).unwrap();
     assert!(stl.check_writable("b.stl").is_ok());
     assert_eq!(
         file("a.obj", stl.to_bytes("a.obj", &rest(&stl)).unwrap()).soup(),
         stl.soup()
+    );
+    let obj = file("a.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n");
+    let bytes = obj.to_bytes("a.stl", &rest(&obj)).unwrap();
+    assert_eq!(bytes.len(), 84 + 2 * 50);
+    let read = file("a.stl", bytes);
+    assert_eq!(read.format(), Format::Stl);
+    assert_eq!(
+        (read.soup().positions.len(), read.soup().faces.len()),
+        (4, 2)
     );
 }

@@ -2,7 +2,7 @@
 //! read can be written back.
 
 use mesh_core::io::{Format, MeshFile, Morphs};
-use mesh_core::{shapes, Point3, Positions};
+use mesh_core::{Point3, Positions};
 
 /// Reads `bytes` as a file called `name`; where that works, writes them back unchanged, changed and converted.
 ///
@@ -15,14 +15,30 @@ pub fn survive(name: &str, bytes: &[u8]) {
     file.soup().check().expect("what was read is sound");
     let rest = Positions::from(file.soup().positions.clone());
     let is_packed = bytes.starts_with(&[0x1F, 0x8B]);
-    let unchanged = file.to_bytes(name, &rest).expect("what was read is written");
-    assert!(is_packed || unchanged == bytes, "unchanged positions change the file");
-    let _ = (file.vertex_normals(), file.soup().weld(0.0), file.soup().weld(0.25));
+    if !file.keeps_format(name) {
+        // The content spoke louder than the name.
+        let _ = file.to_bytes(name, &rest);
+        return;
+    }
+    let unchanged = file
+        .to_bytes(name, &rest)
+        .expect("what was read is written");
+    assert!(
+        is_packed || unchanged == bytes,
+        "unchanged positions change the file"
+    );
+    let _ = (
+        file.vertex_normals(),
+        file.soup().weld(0.0),
+        file.soup().weld(0.25),
+    );
     for other in ["a.obj", "a.ply", "a.off"] {
         let _ = (file.lost_in(other), file.to_bytes(other, &rest));
     }
 
-    let moved: Positions = (0..rest.len()).map(|row| Point3::new(1.5, -0.25, row as f64 + 0.5)).collect();
+    let moved: Positions = (0..rest.len())
+        .map(|row| Point3::new(1.5, -0.25, row as f64 + 0.5))
+        .collect();
     let written = file.to_bytes(name, &moved);
     if matches!(file.format(), Format::Gltf | Format::Glb) {
         // Wild transforms may have no way back: it is enough that nothing breaks.
@@ -34,7 +50,8 @@ pub fn survive(name: &str, bytes: &[u8]) {
         }
         return;
     }
-    let again = MeshFile::from_bytes(name, written.expect("it is written moved")).expect("and read again");
+    let again =
+        MeshFile::from_bytes(name, written.expect("it is written moved")).expect("and read again");
     assert_eq!(again.soup().positions, moved.as_slice());
     assert_eq!(again.soup().faces, file.soup().faces);
 }
@@ -62,37 +79,7 @@ pub fn glb(bytes: &[u8]) -> Vec<u8> {
     out
 }
 
-/// Reads a landmark file for a small mesh.
-pub fn read_landmarks(text: &str) {
-    let source = shapes::open_grid(2, 2);
-    let target = [Point3::new(1.0, 2.0, 3.0), Point3::new(4.0, 5.0, 6.0)];
-    if let Ok(landmarks) = drape_cli::read_landmarks(text, Some("a\nb\n"), source, &target) {
-        for landmark in landmarks {
-            assert!(landmark.target.iter().all(|c| c.is_finite()));
-        }
-    }
-}
-
-/// Reads a settings file, and what it settles on once more.
-///
-/// # Panics
-/// If the settings that were read are not written.
-pub fn read_settings(text: &str) {
-    if let Ok(config) = drape_cli::read_settings(text) {
-        let _ = config.check();
-    }
-}
-
-/// Loads a warp and sends two points through it.
-///
-/// # Panics
-/// If there is no folder for temporary files.
-pub fn load_warp(bytes: &[u8]) {
-    let shared_memory = std::path::Path::new("/dev/shm");
-    let folder = if shared_memory.is_dir() { shared_memory.to_owned() } else { std::env::temp_dir() };
-    let path = folder.join(format!("drape-fuzz-{}.drape", std::process::id()));
-    std::fs::write(&path, bytes).expect("a temporary file is written");
-    if let Ok(warp) = neural_drape::Warp::load(&path) {
-        let _ = warp.apply(&[Point3::origin(), Point3::new(1.0, -2.0, 0.5)]);
-    }
-}
+#[cfg(feature = "drape")]
+mod drape;
+#[cfg(feature = "drape")]
+pub use drape::{load_warp, read_landmarks, read_settings};

@@ -7,6 +7,7 @@ mod json_spans;
 mod morphs;
 mod prune;
 mod scene;
+mod write;
 
 use std::collections::{HashMap, HashSet};
 use std::path::Path;
@@ -15,11 +16,12 @@ use nalgebra::{Matrix3, Matrix4};
 
 use self::container::{Bounds, Container};
 use self::scene::{Block, Scene};
-use super::contents::{polygon_area_vector, CarriedNormals, Morphs, Parsed};
+use super::contents::{polygon_area_vector, unit, CarriedNormals, Morphs, Parsed};
 use super::error::{Fault, Place, ReadProblem};
 use crate::{Point3, Vector3};
 
 pub(in crate::io) use self::container::is_glb;
+pub(in crate::io) use self::write::{write_glb, write_gltf};
 
 /// Reads a file: the vertices of each mesh where its node puts them, and their triangles.
 pub(super) fn read(bytes: &[u8], path: &Path) -> Result<Parsed, Fault> {
@@ -119,7 +121,20 @@ pub(super) fn rewrite(
         Morphs::Drop => prune::without_morphs(container.json()),
         Morphs::Carry | Morphs::Keep => Vec::new(),
     };
-    Ok(container.with(&changed, &bounds, edits))
+    let written = container.with(&changed, &bounds, edits);
+    check_faces(&written, path, &scene)?;
+    Ok(written)
+}
+
+/// Numbers that overlap others in the buffer would change these: what was written must still read as the same faces.
+fn check_faces(written: &[u8], path: &Path, scene: &Scene) -> Result<(), Fault> {
+    match read(written, path) {
+        Ok(again) if again.soup.faces == scene.soup.faces => Ok(()),
+        _ => Err(container::unsupported(
+            "a mesh whose positions share bytes with other data".to_owned(),
+            "export it again",
+        )),
+    }
 }
 
 /// All vertices in the frames of their own meshes, as read and moved.
@@ -279,9 +294,9 @@ fn put_tangents(
             .filter(|&row| shapes.rest[row] != shapes.moved[row])
         {
             let (tangent, normal) = sums[row];
-            let normal = normal.try_normalize(f64::MIN_POSITIVE).unwrap_or_default();
+            let normal = unit(normal).unwrap_or_default();
             let flat = tangent - normal * normal.dot(&tangent);
-            if let Some(t) = flat.try_normalize(f64::MIN_POSITIVE) {
+            if let Some(t) = unit(flat) {
                 tangents.put(buffers, row - block.rows.start, t.as_slice());
             }
         }
@@ -295,7 +310,7 @@ fn face_map(shapes: &Shapes, corners: &[u32]) -> Option<Matrix3<f64>> {
     };
     let frame = |x: &[Point3]| {
         let [a, b, c] = [a, b, c].map(|v| x[v as usize]);
-        let normal = (b - a).cross(&(c - a)).try_normalize(f64::MIN_POSITIVE)?;
+        let normal = unit((b - a).cross(&(c - a)))?;
         Some(Matrix3::from_columns(&[b - a, c - a, normal]))
     };
     Some(frame(&shapes.moved)? * frame(&shapes.rest)?.try_inverse()?)
@@ -319,6 +334,25 @@ pub(super) fn vertex_normals(bytes: &[u8], path: &Path) -> Option<Vec<Vector3>> 
         let turn = turn.unwrap_or_else(Matrix3::zeros);
         for row in block.rows.clone() {
             out[row] = turn * Vector3::from(normals.get::<3>(&container, row - block.rows.start));
+            any = true;
+        }
+    }
+    any.then_some(out)
+}
+
+/// The texture coordinates of the vertices, the first set; (0, 0) at the lower left, where these files have it above.
+pub(super) fn vertex_uvs(bytes: &[u8], path: &Path) -> Option<Vec<[f64; 2]>> {
+    let container = Container::read(bytes, path).ok()?;
+    let scene = Scene::read(&container).ok()?;
+    let mut out = vec![[0.0; 2]; scene.soup.positions.len()];
+    let mut any = false;
+    for block in &scene.blocks {
+        let Some(uvs) = &block.uvs else { continue };
+        for row in block.rows.clone() {
+            let uv = uvs.get::<2>(&container, row - block.rows.start);
+            if uv.iter().all(|c| c.is_finite()) {
+                out[row] = [uv[0], 1.0 - uv[1]];
+            }
             any = true;
         }
     }

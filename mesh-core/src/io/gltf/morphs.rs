@@ -9,6 +9,7 @@ use nalgebra::Matrix3;
 use super::accessor::{Layout, Layouts};
 use super::container::{Bounds, Container};
 use super::scene::{Block, Scene};
+use crate::io::contents::unit;
 use crate::io::error::{Fault, Place, ReadProblem};
 use crate::{Point3, Vector3};
 
@@ -179,8 +180,8 @@ fn carried(
         }
     };
     let difference = |base: Vector3, map: Matrix3<f64>| {
-        let unit = |v: Vector3| (map * v).try_normalize(f64::MIN_POSITIVE);
-        Some(unit(base + displacement)? - unit(base)?)
+        let to_unit = |v: Vector3| unit(map * v);
+        Some(to_unit(base + displacement)? - to_unit(base)?)
     };
     match displaced {
         Displaced::Position => Some(map * displacement),
@@ -244,7 +245,7 @@ fn face_map(rest: &[Point3], moved: &[Point3], corners: &[u32]) -> Option<(Matri
     let frame = |x: &[Point3]| {
         let [a, b, c] = [a, b, c].map(|v| x[v as usize]);
         let area = (b - a).cross(&(c - a));
-        let normal = area.try_normalize(f64::MIN_POSITIVE)? * area.norm().sqrt();
+        let normal = unit(area)? * area.norm().sqrt();
         Some((Matrix3::from_columns(&[b - a, c - a, normal]), area.norm()))
     };
     let ((from, area), (to, _)) = (frame(rest)?, frame(moved)?);

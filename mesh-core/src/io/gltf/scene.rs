@@ -23,6 +23,7 @@ pub(super) struct Block {
     pub(super) positions: Rc<Layout>,
     pub(super) normals: Option<Rc<Layout>>,
     pub(super) tangents: Option<Rc<Layout>>,
+    pub(super) uvs: Option<Rc<Layout>>,
     /// The accessors with displacements of morph targets.
     pub(super) displacements: BTreeSet<(Displaced, usize)>,
     /// From the mesh's own frame into the scene; none where they are the same.
@@ -125,6 +126,7 @@ impl Scene {
             vector(Semantic::Normals, 3)?,
             vector(Semantic::Tangents, 4)?,
         );
+        let uvs = vector(Semantic::TexCoords(0), 2)?;
         let (has_uvs, has_colors) = (
             attribute(Semantic::TexCoords(0)),
             attribute(Semantic::Colors(0)),
@@ -141,6 +143,7 @@ impl Scene {
         }
         block.normals = block.normals.take().or(normals);
         block.tangents = block.tangents.take().or(tangents);
+        block.uvs = block.uvs.take().or(uvs);
         block.displacements.extend(displacements(primitive));
         self.add_faces(container, primitive, rows)
     }
@@ -180,6 +183,7 @@ impl Scene {
             positions,
             normals: None,
             tangents: None,
+            uvs: None,
             displacements: BTreeSet::new(),
             to_scene,
             rows: first..self.soup.positions.len(),

@@ -1,0 +1,70 @@
+//! What a file loses when it is written in another format.
+
+use super::contents::Contents;
+use super::format::Format;
+use crate::PolygonSoup;
+
+/// What a new file of `to` does not keep of a file of `from`, in one line; none if it keeps all.
+pub(super) fn lost(
+    from: Format,
+    to: Format,
+    soup: &PolygonSoup,
+    contents: &Contents,
+) -> Option<String> {
+    let lost = lost_elements(from, to, soup, contents);
+    let mut changed = Vec::new();
+    let n_polygons = soup.faces.iter().filter(|face| face.len() > 3).count();
+    if n_polygons > 0 && has_triangles_only(to) {
+        changed.push(format!("{n_polygons} polygons become triangles"));
+    }
+    if to == Format::Stl {
+        changed.push("each triangle gets corners of its own".to_owned());
+    }
+    if matches!(to, Format::Gltf | Format::Glb) && contents.n_uvs > 0 && keeps_uvs(from, to) {
+        changed.push("vertices are split where texture coordinates differ".to_owned());
+    }
+    if has_triangles_only(to) {
+        changed.push("coordinates are rounded to single precision".to_owned());
+    }
+    if lost.is_empty() && changed.is_empty() {
+        return None;
+    }
+    let kept = (!lost.is_empty()).then(|| format!("these are not kept: {}", lost.join(", ")));
+    let told: Vec<String> = kept.into_iter().chain(changed).collect();
+    let (from, to) = (from.name(), to.name());
+    Some(format!("from {from} to {to}, {}", told.join("; ")))
+}
+
+fn lost_elements(from: Format, to: Format, soup: &PolygonSoup, contents: &Contents) -> Vec<String> {
+    let (n_uvs, n_faces) = (contents.n_uvs, soup.faces.len());
+    let counts = [
+        (if to == Format::Xyz { n_faces } else { 0 }, "faces"),
+        (
+            if keeps_uvs(from, to) { 0 } else { n_uvs },
+            "texture coordinates",
+        ),
+        (contents.n_normals, "normals"),
+        (contents.n_colors, "vertex colours"),
+        (contents.n_lines_and_points, "line and point elements"),
+        (contents.n_morph_targets, "morph targets"),
+        (contents.n_skins, "skins"),
+        (contents.n_animations, "animations"),
+        (contents.objects.len(), "object names"),
+        (contents.groups.len(), "groups"),
+        (contents.materials.len(), "materials"),
+        (contents.n_smoothing_groups, "smoothing groups"),
+        (contents.n_comments, "comments"),
+    ];
+    let lost = counts.iter().filter(|(n, _)| *n > 0);
+    lost.map(|(n, what)| format!("{n} {what}")).collect()
+}
+
+/// Whether texture coordinates go from one format to the other.
+fn keeps_uvs(from: Format, to: Format) -> bool {
+    let has_uvs = |format| matches!(format, Format::Obj | Format::Gltf | Format::Glb);
+    has_uvs(from) && has_uvs(to)
+}
+
+fn has_triangles_only(format: Format) -> bool {
+    matches!(format, Format::Stl | Format::Gltf | Format::Glb)
+}

@@ -1,0 +1,42 @@
+//! The readers that are not of mesh files.
+
+use mesh_core::{shapes, Point3};
+
+/// Reads a landmark file for a small mesh.
+pub fn read_landmarks(text: &str) {
+    let source = shapes::open_grid(2, 2);
+    let target = [Point3::new(1.0, 2.0, 3.0), Point3::new(4.0, 5.0, 6.0)];
+    if let Ok(landmarks) = drape_cli::read_landmarks(text, Some("a\nb\n"), source, &target) {
+        for landmark in landmarks {
+            assert!(landmark.target.iter().all(|c| c.is_finite()));
+        }
+    }
+}
+
+/// Reads a settings file, and what it settles on once more.
+///
+/// # Panics
+/// If the settings that were read are not written.
+pub fn read_settings(text: &str) {
+    if let Ok(config) = drape_cli::read_settings(text) {
+        let _ = config.check();
+    }
+}
+
+/// Loads a warp and sends two points through it.
+///
+/// # Panics
+/// If there is no folder for temporary files.
+pub fn load_warp(bytes: &[u8]) {
+    let shared_memory = std::path::Path::new("/dev/shm");
+    let folder = if shared_memory.is_dir() {
+        shared_memory.to_owned()
+    } else {
+        std::env::temp_dir()
+    };
+    let path = folder.join(format!("drape-fuzz-{}.drape", std::process::id()));
+    std::fs::write(&path, bytes).expect("a temporary file is written");
+    if let Ok(warp) = neural_drape::Warp::load(&path) {
+        let _ = warp.apply(&[Point3::origin(), Point3::new(1.0, -2.0, 0.5)]);
+    }
+}
