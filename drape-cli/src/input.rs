@@ -1,13 +1,14 @@
 //! What a command reads: a source to deform, a target to drape onto, landmarks between them.
 
 use std::path::Path;
+use std::sync::Arc;
 
 use anyhow::{ensure, Context as _};
 use mesh_core::bvh::closest_point_on_triangle;
 use mesh_core::io::{self, MeshFile};
 use mesh_core::{
     Aabb, FaceId, HalfedgeMesh, Landmark, Location, MeshPoint, Point3, PointCloud, PolygonSoup,
-    Positions, TargetSurface, TriangleBvh, TriangleSoup, Triangulation, VertexId, Weld,
+    Positions, SurfelCloud, TargetSurface, TriangleBvh, TriangleSoup, Triangulation, VertexId, Weld,
 };
 
 use crate::landmarks;
@@ -113,31 +114,98 @@ impl Source {
 
 /// A shape to drape onto. A file without faces is a cloud.
 pub(crate) struct Target {
-    pub(crate) surface: Box<dyn TargetSurface>,
+    /// What results are judged by: strays left out.
+    pub(crate) surface: Arc<dyn TargetSurface>,
+    /// What is draped over: the same, but for a cloud, which counts as discs.
+    pub(crate) over: Arc<dyn TargetSurface>,
     /// The points of the file, in its order.
     pub(crate) vertices: Vec<Point3>,
     pub(crate) model: Model,
+    /// What was left out as no part of the shape, in words.
+    pub(crate) left_out: Vec<String>,
 }
 
 impl Target {
     fn of_file(file: MeshFile) -> anyhow::Result<Self> {
-        if !file.soup().faces.is_empty() {
-            return Ok(Self {
-                vertices: file.soup().positions.clone(),
-                model: Model::of_soup(file.soup())?,
-                surface: Box::new(TriangleSoup::new(file.into_soup())?),
-            });
+        if file.soup().faces.is_empty() {
+            Self::of_cloud(file)
+        } else {
+            Self::of_surface(file)
         }
+    }
+
+    fn of_surface(file: MeshFile) -> anyhow::Result<Self> {
+        let vertices = file.soup().positions.clone();
+        let model = Model::of_soup(file.soup())?;
+        let mut soup = TriangleSoup::new(file.into_soup())?;
+        let strays = soup.strays();
+        let mut left_out = Vec::new();
+        let total = soup.area();
+        if let Some(kept) = soup.without(&[strays.crumbs.as_slice(), &strays.hidden].concat()) {
+            let what = [
+                (strays.crumbs.len(), "in crumbs and fins"),
+                (
+                    strays.hidden.len(),
+                    "of inner walls that no ray from outside reaches",
+                ),
+            ];
+            let share = 100.0 * (1.0 - kept.area() / total);
+            let counted = what.iter().filter(|(n, _)| *n > 0);
+            let list: Vec<String> = counted.map(|(n, what)| format!("{n} {what}")).collect();
+            if !list.is_empty() {
+                left_out.push(format!(
+                    "triangles of the target were left out as no part of its outer surface: {} ({share:.1} % of its area)",
+                    list.join(", ")
+                ));
+                soup = kept;
+            }
+        }
+        let surface: Arc<dyn TargetSurface> = Arc::new(soup);
+        Ok(Self {
+            over: Arc::clone(&surface),
+            surface,
+            vertices,
+            model,
+            left_out,
+        })
+    }
+
+    fn of_cloud(file: MeshFile) -> anyhow::Result<Self> {
         let normals = file.vertex_normals();
         let vertices = file.into_soup().positions;
-        let cloud = PointCloud::new(vertices.clone(), normals)?;
-        let normals: Vec<_> = (0..vertices.len() as u32)
+        let mut cloud = PointCloud::new(vertices.clone(), normals.clone())?;
+        let mut left_out = Vec::new();
+        let mut kept = vertices.clone();
+        if !cloud.strays().is_empty() {
+            let mut is_stray = vec![false; vertices.len()];
+            cloud
+                .strays()
+                .iter()
+                .for_each(|&row| is_stray[row as usize] = true);
+            let mut row = is_stray.iter();
+            kept.retain(|_| row.next() == Some(&false));
+            let normals = normals.map(|mut normals| {
+                let mut row = is_stray.iter();
+                normals.retain(|_| row.next() == Some(&false));
+                normals
+            });
+            left_out.push(format!(
+                "{} of {} points of the target lie far from all others and were left out",
+                vertices.len() - kept.len(),
+                vertices.len()
+            ));
+            cloud = PointCloud::new(kept.clone(), normals)?;
+        }
+        let normals: Vec<_> = (0..kept.len() as u32)
             .map(|index| cloud.normal(&Location::Point { index }).unwrap_or_default())
             .collect();
+        let cloud = Arc::new(cloud);
         Ok(Self {
-            model: Model::cloud(&vertices, Some(&normals)),
-            surface: Box::new(cloud),
+            model: Model::cloud(&kept, Some(&normals)),
+            over: Arc::new(SurfelCloud::new(Arc::clone(&cloud))),
+            surface: cloud,
             vertices,
+            left_out,
         })
     }
 }
@@ -169,6 +237,13 @@ impl Pair {
             target,
             landmarks,
         })
+    }
+
+    /// Everything about the inputs that deserves attention, in words.
+    pub(crate) fn warnings(&self) -> Vec<String> {
+        let mut warnings = landmarks::doctor::examine(self);
+        warnings.extend(self.target.left_out.iter().cloned());
+        warnings
     }
 }
 

@@ -128,7 +128,7 @@ fn left_out(drape: &Drape<'_>) -> Vec<String> {
     .map(|(_, share, one, other)| {
         let percent = 100.0 * share;
         format!(
-            "{percent:.0} % of the {one} lies beyond the {other} and is left out (setting overlap)"
+            "{percent:.0} % of the {one} lies beyond the {other} and was left out (--overlap decides otherwise)"
         )
     })
     .collect()
@@ -139,7 +139,7 @@ fn drape(pair: &Pair, settings: &Settings, initial: &Positions) -> anyhow::Resul
         triangulation: &pair.source.triangulation,
         rest: &pair.source.rest,
         initial,
-        target: pair.target.surface.as_ref(),
+        target: pair.target.over.as_ref(),
         landmarks: &pair.landmarks,
     };
     let mut drape = Drape::new(input, settings.config.clone())?;

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use anyhow::{anyhow, Context as _};
-use neural_drape::DrapeConfig;
+use neural_drape::{DrapeConfig, OverlapMode};
 use toml::{Table, Value};
 
 use crate::initial::Start;
@@ -24,6 +24,36 @@ pub(crate) struct SettingsArgs {
     /// Seed of every random draw: same seed, same result
     #[arg(long, value_name = "N")]
     pub(crate) seed: Option<u64>,
+    /// Which shape is only a part of the other: the rest of the other is left out
+    #[arg(long, value_name = "WHICH")]
+    pub(crate) overlap: Option<OverlapArg>,
+}
+
+/// [`OverlapMode`] on the command line.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub(crate) enum OverlapArg {
+    /// Found out from the initial deformation
+    Auto,
+    /// Both shapes are whole
+    Full,
+    /// The source covers only a part of the target, as a mask does
+    SourcePartial,
+    /// The target covers only a part of the source, as a scan from one side does
+    TargetPartial,
+    /// Each has parts that the other lacks
+    Both,
+}
+
+impl From<OverlapArg> for OverlapMode {
+    fn from(arg: OverlapArg) -> Self {
+        match arg {
+            OverlapArg::Auto => Self::Auto,
+            OverlapArg::Full => Self::Full,
+            OverlapArg::SourcePartial => Self::SourcePartial,
+            OverlapArg::TargetPartial => Self::TargetPartial,
+            OverlapArg::Both => Self::BothPartial,
+        }
+    }
 }
 
 /// Settings and the name of the preset that they come from.
@@ -43,6 +73,9 @@ impl SettingsArgs {
         settings.start = self.initial.unwrap_or(settings.start);
         if let Some(seed) = self.seed {
             settings.config.seed = seed;
+        }
+        if let Some(overlap) = self.overlap {
+            settings.config.overlap = overlap.into();
         }
         Ok(settings)
     }

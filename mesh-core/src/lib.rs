@@ -36,7 +36,8 @@ pub use landmark::{Landmark, LandmarkKind, MeshPoint};
 pub use measure::{Aabb, UnitFrame};
 pub use soup::PolygonSoup;
 pub use surface::{
-    Location, NormalSign, PointCloud, SurfacePoint, SurfaceSample, TargetSurface, TriangleSoup,
+    Location, NormalSign, PointCloud, Strays, SurfacePoint, SurfaceSample, SurfelCloud,
+    TargetSurface, TriangleSoup,
 };
 pub use triangulation::{Triangulation, TriangulationEdge};
 pub use weld::Weld;

@@ -6,7 +6,6 @@ use std::process::ExitCode;
 use crate::gallery::{Gallery, ViewArgs};
 use crate::initial::{deform, Start};
 use crate::input::{read_positions, Pair};
-use crate::landmarks::doctor;
 use crate::output::{check_distinct, check_mesh, check_writable, say, warn};
 use crate::render::{Image, View};
 use crate::run::judge;
@@ -64,7 +63,7 @@ pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
         .as_deref()
         .map(|path| read_positions(path, &pair.source))
         .transpose()?;
-    let mut warnings = doctor::examine(&pair);
+    let mut warnings = pair.warnings();
     warnings.extend(args.morphs.left_behind(&pair.file, &args.output));
     warnings.extend(pair.file.lost_in(&args.output));
     warn(&warnings);

@@ -22,6 +22,7 @@ pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
                 config: None,
                 initial: None,
                 seed: None,
+                overlap: None,
             };
             say(&to_toml(&settings.settings()?)?)?;
         }

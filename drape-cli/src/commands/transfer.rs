@@ -9,7 +9,6 @@ use mesh_core::Positions;
 
 use crate::gallery::{Gallery, ViewArgs, DISTANCE_AT_TOP};
 use crate::input::{read_positions, Pair};
-use crate::landmarks::doctor;
 use crate::output::{check_distinct, check_mesh, check_writable, say, warn};
 use crate::render::{Image, View};
 use crate::report::Page;
@@ -78,7 +77,7 @@ pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
         .map(|path| read_positions(path, &pair.source))
         .transpose()?;
 
-    let mut warnings = doctor::examine(&pair);
+    let mut warnings = pair.warnings();
     warnings.extend(args.morphs.left_behind(&pair.file, &args.output));
     warnings.extend(pair.file.lost_in(&args.output));
     warn(&warnings);

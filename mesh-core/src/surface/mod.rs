@@ -5,10 +5,14 @@ mod neighbourhood;
 mod orientation;
 mod point_cloud;
 mod propagate;
+mod stray;
+mod surfels;
 mod triangle_soup;
 mod weld;
 
 pub use point_cloud::PointCloud;
+pub use stray::Strays;
+pub use surfels::SurfelCloud;
 pub use triangle_soup::TriangleSoup;
 
 use rand::RngCore;

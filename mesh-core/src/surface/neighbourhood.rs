@@ -12,6 +12,9 @@ use crate::{Point3, Vector3};
 const K: usize = 24;
 /// The nearest of them, that make up a plane. Fewer follow noise, more cut corners.
 const N_IN_PLANE: usize = 16;
+/// A point whose neighbours are farther than this many times what they are from their own is stray. On a surface with
+/// even noise the ratio stays below 2; where the density of a cloud steps, points at the step see half of each.
+const FAR: f64 = 3.0;
 /// Neighbours that are kept for propagation.
 pub(super) const N_KEPT: usize = 8;
 /// No neighbour.
@@ -69,6 +72,29 @@ pub(super) fn boundary(neighbourhoods: &[Neighbourhood]) -> Vec<bool> {
     neighbourhoods
         .iter()
         .map(|n| n.has_gap && n.nearest.iter().filter(has_gap).count() >= N_COMPANIONS)
+        .collect()
+}
+
+/// Rows of points much farther from their neighbours than those are from theirs (after Breunig et al. 2000, "LOF",
+/// with the median in place of the mean).
+pub(super) fn strays(neighbourhoods: &[Neighbourhood]) -> Vec<u32> {
+    let usual = |n: &Neighbourhood| {
+        let mut areas: Vec<f64> = n
+            .nearest
+            .iter()
+            .filter(|&&row| row != NONE)
+            .map(|&row| neighbourhoods[row as usize].area)
+            .collect();
+        areas.sort_by(f64::total_cmp);
+        areas.get(areas.len() / 2).copied()
+    };
+    let is_stray = |n: &&Neighbourhood| {
+        usual(n).is_some_and(|usual| n.area > FAR * FAR * usual && usual > 0.0)
+    };
+    (0u32..)
+        .zip(neighbourhoods)
+        .filter(|(_, n)| is_stray(n))
+        .map(|(row, _)| row)
         .collect()
 }
 

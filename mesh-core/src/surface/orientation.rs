@@ -191,6 +191,37 @@ fn verdict(
     (votes.sum::<i64>() as f64 / n as f64, area)
 }
 
+/// Which share of `n` rays from a patch, half of them to each side, escapes to infinity.
+pub(super) fn escaping_share(bvh: &TriangleBvh, patch: &[u32], n: usize) -> f64 {
+    let areas: Vec<f64> = patch
+        .iter()
+        .scan(0.0, |sum, &t| {
+            *sum += triangle_area(bvh.triangle(t));
+            Some(*sum)
+        })
+        .collect();
+    let area = areas.last().copied().unwrap_or(0.0);
+    let lift = LIFT * bvh.bounds().diagonal();
+    let escaped = (0..n).into_par_iter().filter(|&k| {
+        let at = area * (k as f64 + 0.5) / n as f64;
+        let t = patch[areas.partition_point(|&c| c < at).min(patch.len() - 1)];
+        escapes(bvh, t, if k % 2 == 0 { 1.0 } else { -1.0 }, lift, k)
+    });
+    escaped.count() as f64 / n.max(1) as f64
+}
+
+/// Whether the `k`-th ray from triangle `t` escapes on the side of its corners' order (`side` 1) or the other (−1).
+fn escapes(bvh: &TriangleBvh, t: u32, side: f64, lift: f64, k: usize) -> bool {
+    let corners = bvh.triangle(t);
+    let Some(normal) = area_vector(corners).try_normalize(f64::MIN_POSITIVE) else {
+        return false;
+    };
+    let [a, b, c, d] = spread(k);
+    let (from, slant) = (on_triangle(&corners, a, b), slanted(&normal, c, d));
+    bvh.first_hit(&(from + normal * (side * lift)), &(slant * side))
+        .is_none()
+}
+
 /// 1 if a ray escapes in front only, −1 if behind only.
 fn vote(bvh: &TriangleBvh, t: u32, is_flipped: bool, lift: f64, k: usize) -> i64 {
     let corners = bvh.triangle(t);

@@ -2,7 +2,7 @@
 
 use rand::{Rng, RngCore};
 
-use super::neighbourhood::{boundary, neighbourhoods};
+use super::neighbourhood::{boundary, neighbourhoods, strays};
 use super::{propagate, Location, NormalSign, SurfacePoint, SurfaceSample, TargetSurface};
 use crate::bvh::BoxTree;
 use crate::{Aabb, Point3, TopologyError, Vector3};
@@ -27,6 +27,9 @@ pub struct PointCloud {
     normals: Vec<Vector3>,
     sign: NormalSign,
     is_on_boundary: Vec<bool>,
+    strays: Vec<u32>,
+    /// Root of the mean squared distance to the neighbours of each point.
+    spacing: Vec<f64>,
     bounds: Aabb,
 }
 
@@ -45,6 +48,8 @@ impl PointCloud {
         let sign = propagate::orient(&points, &mut around, given.is_some());
         Ok(Self {
             is_on_boundary: boundary(&around),
+            strays: strays(&around),
+            spacing: around.iter().map(|n| n.area.sqrt()).collect(),
             normals: around.into_iter().map(|n| n.normal).collect(),
             tree,
             points,
@@ -56,6 +61,22 @@ impl PointCloud {
     /// How many points there are.
     pub fn len(&self) -> usize {
         self.points.len()
+    }
+
+    /// Points that lie far from the others, by row, ascending: their neighbours are several times as far from them as
+    /// the neighbours are from each other. Sparse regions of an uneven cloud are no strays.
+    pub fn strays(&self) -> &[u32] {
+        &self.strays
+    }
+
+    /// The points, by row.
+    pub(super) fn points(&self) -> &[Point3] {
+        &self.points
+    }
+
+    /// Root of the mean squared distance of each point to its 24 nearest.
+    pub(super) fn spacing(&self) -> &[f64] {
+        &self.spacing
     }
 
     /// Whether there is no point: never.

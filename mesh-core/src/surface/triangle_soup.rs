@@ -5,6 +5,7 @@ use rayon::prelude::*;
 
 use super::boundary::Boundary;
 use super::orientation::Orientation;
+use super::stray::Strays;
 use super::weld::Weld;
 use super::{Location, NormalSign, SurfacePoint, SurfaceSample, TargetSurface};
 use crate::measure::{triangle_area, triangle_normal};
@@ -79,6 +80,29 @@ impl TriangleSoup {
     /// Whether the surface has an open boundary.
     pub fn has_boundary(&self) -> bool {
         !self.boundary.is_empty()
+    }
+
+    /// Triangles that do not belong to the outer surface: fins, crumbs, and patches that no ray from outside reaches.
+    ///
+    /// Only where one patch makes up most of the soup. Surfaces that hang together are never taken apart: the inside of
+    /// a mouth is part of its face.
+    pub fn strays(&self) -> Strays {
+        Strays::of(&self.bvh)
+    }
+
+    /// The same target without the triangles in these rows; the others are numbered anew. None if none is left.
+    pub fn without(&self, rows: &[u32]) -> Option<Self> {
+        let mut is_out = vec![false; self.bvh.len()];
+        for &row in rows {
+            if let Some(out) = is_out.get_mut(row as usize) {
+                *out = true;
+            }
+        }
+        let kept = (0..self.bvh.len() as u32).filter(|&t| !is_out[t as usize]);
+        let positions: Vec<Point3> = kept.flat_map(|t| self.bvh.triangle(t)).collect();
+        let n = positions.len() as u32 / 3;
+        let faces = (0..n).map(|t| vec![3 * t, 3 * t + 1, 3 * t + 2]).collect();
+        Self::new(PolygonSoup { positions, faces }).ok()
     }
 
     /// A triangle with probability proportional to its area; any if none has area.

@@ -1,0 +1,206 @@
+//! Parts of a triangle soup that do not belong to its outer surface: fins, crumbs and inner walls.
+//!
+//! A soup falls into patches, joined within by edges that exactly two triangles share. One patch is usually the
+//! shape; what hangs on it at edges of three or more triangles, floats beside it, or is closed in by it is not.
+
+use super::orientation::escaping_share;
+use super::weld::Weld;
+use crate::measure::triangle_area;
+use crate::TriangleBvh;
+
+/// Nothing is called stray unless one patch holds at least this share of the area.
+const MAIN_SHARE: f64 = 0.5;
+/// Patches up to this share of the largest one's area are crumbs or, where they hang on others, fins.
+const SMALL: f64 = 5e-3;
+/// A patch from which fewer than this share of rays escapes, to either side, is hidden.
+const SEEN: f64 = 0.02;
+
+/// Triangles that do not belong to the outer surface, by row, ascending.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Strays {
+    /// Of small sheets that hang on an edge of the surface or float beside it.
+    pub crumbs: Vec<u32>,
+    /// Of larger patches that no ray from outside reaches.
+    pub hidden: Vec<u32>,
+}
+
+impl Strays {
+    /// Whether everything belongs to the surface.
+    pub fn is_empty(&self) -> bool {
+        self.crumbs.is_empty() && self.hidden.is_empty()
+    }
+
+    /// The strays among the triangles of `bvh`.
+    pub(super) fn of(bvh: &TriangleBvh) -> Self {
+        let corners: Vec<_> = (0..bvh.len() as u32).map(|t| bvh.triangle(t)).collect();
+        let positions: Vec<_> = corners.iter().flatten().copied().collect();
+        let rows: Vec<[u32; 3]> = (0..corners.len() as u32)
+            .map(|t| [3 * t, 3 * t + 1, 3 * t + 2])
+            .collect();
+        let weld = Weld::new(&positions, &rows);
+        let patches = patches(&weld);
+        let areas: Vec<f64> = patches
+            .iter()
+            .map(|patch| {
+                patch
+                    .iter()
+                    .map(|&t| triangle_area(corners[t as usize]))
+                    .sum()
+            })
+            .collect();
+        let (total, largest) = areas
+            .iter()
+            .fold((0.0, 0.0f64), |(sum, most), &a| (sum + a, most.max(a)));
+        let mut strays = Self::default();
+        if patches.len() < 2 || largest < MAIN_SHARE * total {
+            return strays;
+        }
+        for (patch, &area) in patches.iter().zip(&areas) {
+            if area <= SMALL * largest {
+                strays.crumbs.extend(patch);
+            } else if area < largest && is_hidden(bvh, patch) {
+                strays.hidden.extend(patch);
+            }
+        }
+        strays.add_doubles(&weld);
+        strays
+    }
+
+    /// A double goes with its original.
+    fn add_doubles(&mut self, weld: &Weld) {
+        for rows in [&mut self.crumbs, &mut self.hidden] {
+            rows.sort_unstable();
+            let doubles: Vec<u32> = (0u32..)
+                .zip(&weld.originals)
+                .filter(|&(row, first)| row != *first && rows.binary_search(first).is_ok())
+                .map(|(row, _)| row)
+                .collect();
+            rows.extend(doubles);
+            rows.sort_unstable();
+        }
+    }
+}
+
+/// Whether no ray leaves a patch to infinity, on either side.
+fn is_hidden(bvh: &TriangleBvh, patch: &[u32]) -> bool {
+    const N_RAYS: usize = 512;
+    escaping_share(bvh, patch, N_RAYS) < SEEN
+}
+
+/// Triangles joined by edges that exactly two of them share, lowest first; doubles and degenerate ones left out.
+fn patches(weld: &Weld) -> Vec<Vec<u32>> {
+    let n = weld.triangles.len();
+    let mut parent: Vec<u32> = (0..n as u32).collect();
+    for edge in weld.edges() {
+        if let [a, b] = edge {
+            let (a, b) = (root(&mut parent, a.triangle), root(&mut parent, b.triangle));
+            parent[a.max(b) as usize] = a.min(b);
+        }
+    }
+    let mut row_of = vec![u32::MAX; n];
+    let mut patches: Vec<Vec<u32>> = Vec::new();
+    for t in 0..n as u32 {
+        let [a, b, c] = weld.triangles[t as usize];
+        if weld.originals[t as usize] != t || a == b || b == c || c == a {
+            continue;
+        }
+        let r = root(&mut parent, t) as usize;
+        if row_of[r] == u32::MAX {
+            row_of[r] = patches.len() as u32;
+            patches.push(Vec::new());
+        }
+        patches[row_of[r] as usize].push(t);
+    }
+    patches
+}
+
+fn root(parent: &mut [u32], mut t: u32) -> u32 {
+    while parent[t as usize] != t {
+        parent[t as usize] = parent[parent[t as usize] as usize];
+        t = parent[t as usize];
+    }
+    t
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{shapes, Point3, PolygonSoup, TriangleSoup};
+
+    /// `more` after the faces of `soup`, with its own vertices.
+    fn joined(mut soup: PolygonSoup, more: PolygonSoup) -> PolygonSoup {
+        let n = soup.positions.len() as u32;
+        soup.positions.extend(more.positions);
+        let moved = more
+            .faces
+            .into_iter()
+            .map(|f| f.into_iter().map(|v| v + n).collect());
+        soup.faces.extend(moved);
+        soup
+    }
+
+    fn scaled(mut soup: PolygonSoup, factor: f64) -> PolygonSoup {
+        soup.positions.iter_mut().for_each(|p| *p *= factor);
+        soup
+    }
+
+    fn strays(soup: PolygonSoup) -> Strays {
+        TriangleSoup::new(soup).unwrap().strays()
+    }
+
+    #[test]
+    fn whole_open_and_shattered_surfaces_have_none() {
+        assert!(strays(shapes::icosphere(2)).is_empty());
+        assert!(strays(shapes::open_grid(4, 4)).is_empty());
+        let ball = shapes::icosphere(2);
+        let mut shattered = PolygonSoup {
+            positions: Vec::new(),
+            faces: Vec::new(),
+        };
+        for face in &ball.faces {
+            let n = shattered.positions.len() as u32;
+            shattered
+                .positions
+                .extend(face.iter().map(|&v| ball.positions[v as usize] * 0.9));
+            shattered.faces.push(vec![n, n + 1, n + 2]);
+        }
+        for (k, p) in shattered.positions.iter_mut().enumerate() {
+            p.x += 1e-6 * k as f64;
+        }
+        assert!(strays(shattered).is_empty());
+    }
+
+    #[test]
+    fn fins_crumbs_and_inner_walls_are_found() {
+        let ball = shapes::icosphere(3);
+        let n = ball.faces.len() as u32;
+        let inner = scaled(shapes::icosphere(1), 0.5);
+        let found = strays(joined(ball.clone(), inner));
+        assert_eq!(found.hidden, (n..n + 80).collect::<Vec<_>>());
+        assert!(found.crumbs.is_empty());
+
+        let mut finned = ball.clone();
+        finned.positions.push(Point3::from(
+            ball.positions[ball.faces[0][0] as usize].coords * 1.05,
+        ));
+        let tip = finned.positions.len() as u32 - 1;
+        let edge = [ball.faces[0][0], ball.faces[0][1]];
+        finned.faces.push(vec![edge[0], edge[1], tip]);
+        finned.faces.push(vec![tip, edge[1], edge[0]]);
+        assert_eq!(strays(finned).crumbs, [n, n + 1]);
+
+        let mut crumb = scaled(shapes::tetrahedron(), 0.03);
+        crumb.positions.iter_mut().for_each(|p| p.x += 2.0);
+        assert_eq!(
+            strays(joined(ball, crumb)).crumbs,
+            (n..n + 4).collect::<Vec<_>>()
+        );
+    }
+
+    #[test]
+    fn a_visible_second_piece_stays() {
+        let mut beside = shapes::icosphere(2);
+        beside.positions.iter_mut().for_each(|p| p.x += 2.5);
+        assert!(strays(joined(shapes::icosphere(3), scaled(beside, 0.9))).is_empty());
+    }
+}
