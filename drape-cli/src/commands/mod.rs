@@ -6,6 +6,7 @@ mod demo;
 mod evaluate;
 mod init;
 mod inspect;
+mod landmarks;
 mod metrics;
 mod presets;
 mod transfer;
@@ -23,6 +24,8 @@ pub(crate) enum Command {
     Init(init::Args),
     /// Send other points through the map of a finished drape
     Apply(apply::Args),
+    /// Look at landmarks: check, suggest more, mirror, convert
+    Landmarks(landmarks::Args),
     /// Judge a draped mesh
     Metrics(metrics::Args),
     /// Tell what is in a mesh file
@@ -43,6 +46,7 @@ impl Command {
             Self::Transfer(args) => transfer::run(args),
             Self::Init(args) => init::run(args),
             Self::Apply(args) => apply::run(args),
+            Self::Landmarks(args) => landmarks::run(args),
             Self::Metrics(args) => metrics::run(args),
             Self::Inspect(args) => inspect::run(args),
             Self::Presets(args) => presets::run(args),

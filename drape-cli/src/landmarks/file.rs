@@ -1,4 +1,4 @@
-//! Landmark files: the JSON form with named places, and the plain form of two lists.
+//! Landmark files: the JSON form with named places, the plain form of two lists, and lines of numbers.
 //!
 //! ```json
 //! {"landmarks": [{"name": "nose", "source": {"vertex": 12}, "target": {"point": [0.1, 2.0, 0.3]}, "kind": "soft"}]}
@@ -28,22 +28,22 @@ pub(crate) struct LandmarkFile {
 }
 
 #[derive(Clone, Debug, PartialEq)]
-struct Entry {
-    name: Option<String>,
-    source: SourcePlace,
-    target: TargetPlace,
-    kind: LandmarkKind,
+pub(super) struct Entry {
+    pub(super) name: Option<String>,
+    pub(super) source: SourcePlace,
+    pub(super) target: TargetPlace,
+    pub(super) kind: LandmarkKind,
 }
 
 #[derive(Clone, Debug, PartialEq)]
-enum SourcePlace {
+pub(super) enum SourcePlace {
     Vertex(usize),
     Face { face: usize, weights: Vec<f64> },
     Point(Point3),
 }
 
 #[derive(Clone, Debug, PartialEq)]
-enum TargetPlace {
+pub(super) enum TargetPlace {
     Vertex(usize),
     Point(Point3),
 }
@@ -82,7 +82,7 @@ struct PlainForm {
     target_points: Vec<[f64; 3]>,
 }
 
-/// Reads a landmark file of either form.
+/// Reads a landmark file of any form.
 pub(crate) fn read(path: &Path) -> anyhow::Result<LandmarkFile> {
     let text =
         fs::read_to_string(path).with_context(|| format!("{}: cannot be read", path.display()))?;
@@ -103,6 +103,15 @@ pub(crate) fn from_text(text: &str, names: Option<&str>) -> anyhow::Result<Landm
 }
 
 fn parse(text: &str, names: Option<&str>) -> anyhow::Result<Vec<Entry>> {
+    let first = text
+        .lines()
+        .map(str::trim)
+        .find(|line| !line.is_empty() && !line.starts_with('#'));
+    if first
+        .is_some_and(|line| line.starts_with(|c: char| c.is_ascii_digit() || c == '-' || c == '.'))
+    {
+        return super::text::parse(text);
+    }
     let json: serde_json::Value = serde_json::from_str(text).context("is not JSON")?;
     if let Some(list) = json.get("landmarks") {
         let list = list

@@ -2,5 +2,8 @@
 
 pub(crate) mod doctor;
 mod file;
+pub(crate) mod mirror;
+pub(crate) mod suggest;
+pub(crate) mod text;
 
 pub(crate) use file::{from_text, label, read};

@@ -15,6 +15,9 @@ const N_IN_PLANE: usize = 16;
 /// A point whose neighbours are farther than this many times what they are from their own is stray. On a surface with
 /// even noise the ratio stays below 2; where the density of a cloud steps, points at the step see half of each.
 const FAR: f64 = 3.0;
+/// A group of fewer than this share of the points, spaced wider than this many times what is usual, is stray, too.
+const SMALL: f64 = 0.01;
+const LOOSE: f64 = 1.5;
 /// Neighbours that are kept for propagation.
 pub(super) const N_KEPT: usize = 8;
 /// No neighbour.
@@ -75,27 +78,71 @@ pub(super) fn boundary(neighbourhoods: &[Neighbourhood]) -> Vec<bool> {
         .collect()
 }
 
-/// Rows of points much farther from their neighbours than those are from theirs (after Breunig et al. 2000, "LOF",
-/// with the median in place of the mean).
+/// Rows of points that are no part of the surface: each is much farther from its neighbours than those are from theirs
+/// (after Breunig et al. 2000, "LOF", with the median in place of the mean), or is in a small and loose group.
 pub(super) fn strays(neighbourhoods: &[Neighbourhood]) -> Vec<u32> {
-    let usual = |n: &Neighbourhood| {
-        let mut areas: Vec<f64> = n
-            .nearest
-            .iter()
-            .filter(|&&row| row != NONE)
-            .map(|&row| neighbourhoods[row as usize].area)
-            .collect();
-        areas.sort_by(f64::total_cmp);
-        areas.get(areas.len() / 2).copied()
+    let is_alone: Vec<bool> = neighbourhoods
+        .iter()
+        .map(|n| {
+            let around = n.nearest.iter().filter(|&&row| row != NONE);
+            let usual = median(around.map(|&row| neighbourhoods[row as usize].area));
+            usual > 0.0 && n.area > FAR * FAR * usual
+        })
+        .collect();
+    let group_of = groups(neighbourhoods, &is_alone);
+    let mut sizes = vec![0usize; neighbourhoods.len()];
+    let mut areas = vec![0.0; neighbourhoods.len()];
+    for (&g, n) in group_of.iter().zip(neighbourhoods) {
+        sizes[g as usize] += 1;
+        areas[g as usize] += n.area;
+    }
+    let usual = median(neighbourhoods.iter().map(|n| n.area));
+    let is_loose = |g: usize| {
+        let is_small = (sizes[g] as f64) < SMALL * neighbourhoods.len() as f64;
+        is_small && areas[g] > LOOSE * LOOSE * usual * sizes[g] as f64
     };
-    let is_stray = |n: &&Neighbourhood| {
-        usual(n).is_some_and(|usual| n.area > FAR * FAR * usual && usual > 0.0)
-    };
-    (0u32..)
-        .zip(neighbourhoods)
-        .filter(|(_, n)| is_stray(n))
-        .map(|(row, _)| row)
+    (0..neighbourhoods.len())
+        .filter(|&row| is_alone[row] || is_loose(group_of[row] as usize))
+        .map(|row| row as u32)
         .collect()
+}
+
+/// The lowest row of the group of each point: points are joined that are among the nearest of each other.
+fn groups(neighbourhoods: &[Neighbourhood], is_out: &[bool]) -> Vec<u32> {
+    let mut parent: Vec<u32> = (0..neighbourhoods.len() as u32).collect();
+    fn root(parent: &mut [u32], mut row: u32) -> u32 {
+        while parent[row as usize] != row {
+            parent[row as usize] = parent[parent[row as usize] as usize];
+            row = parent[row as usize];
+        }
+        row
+    }
+    for (row, n) in (0u32..).zip(neighbourhoods) {
+        let joined = n.nearest.iter().filter(|&&other| {
+            other != NONE
+                && other > row
+                && neighbourhoods[other as usize].nearest.contains(&row)
+                && !is_out[row as usize]
+                && !is_out[other as usize]
+        });
+        for &other in joined {
+            let (a, b) = (root(&mut parent, row), root(&mut parent, other));
+            parent[a.max(b) as usize] = a.min(b);
+        }
+    }
+    (0..parent.len() as u32)
+        .map(|row| root(&mut parent, row))
+        .collect()
+}
+
+/// The upper median; 0 of nothing.
+fn median(values: impl Iterator<Item = f64>) -> f64 {
+    let mut values: Vec<f64> = values.collect();
+    let middle = values.len() / 2;
+    if values.is_empty() {
+        return 0.0;
+    }
+    *values.select_nth_unstable_by(middle, f64::total_cmp).1
 }
 
 fn neighbourhood(
@@ -163,4 +210,35 @@ fn widest_gap(offsets: &[Vector3], normal: &Vector3) -> f64 {
         .windows(2)
         .map(|w| w[1] - w[0])
         .fold(around, f64::max)
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::{shapes, Point3, PointCloud};
+
+    #[test]
+    fn points_apart_are_strays_and_sparse_regions_are_not() {
+        let mut points = shapes::icosphere(4).positions;
+        assert!(PointCloud::new(points.clone(), None)
+            .unwrap()
+            .strays()
+            .is_empty());
+
+        let n = points.len() as u32;
+        points.extend([[1.6, 0.0, 0.2], [0.0, 0.1, 0.0], [2.0, 2.0, 2.0]].map(Point3::from));
+        points.extend([[2.1, 2.0, 2.1], [2.0, 1.8, 2.0]].map(Point3::from));
+        let cloud = PointCloud::new(points, None).unwrap();
+        assert_eq!(cloud.strays(), (n..n + 5).collect::<Vec<_>>());
+
+        // A spiral over the sphere, ten times as dense at one pole as at the other.
+        let uneven = (0..4000).map(|k| {
+            let z = 1.0 - 2.0 * (f64::from(k) / 4000.0).powi(2);
+            let (r, turn) = ((1.0 - z * z).max(0.0).sqrt(), 2.4 * f64::from(k));
+            Point3::new(r * turn.cos(), r * turn.sin(), z)
+        });
+        assert!(PointCloud::new(uneven.collect(), None)
+            .unwrap()
+            .strays()
+            .is_empty());
+    }
 }

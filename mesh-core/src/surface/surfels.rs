@@ -8,7 +8,7 @@ use super::{Location, NormalSign, PointCloud, SurfacePoint, SurfaceSample, Targe
 use crate::{Aabb, Point3, Vector3};
 
 /// Radius of a disc as a share of the mean distance to the neighbours: so far a cloud's points stand for its surface.
-const RADIUS: f64 = 0.7;
+const RADIUS: f64 = 0.5;
 
 /// A cloud whose points are discs across their normals, with the area that the spacing of the points gives them.
 ///

@@ -1,0 +1,235 @@
+//! `drape landmarks`
+
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use anyhow::ensure;
+use clap::Subcommand;
+use mesh_core::io::write_atomic;
+use mesh_core::{Aabb, Landmark};
+
+use crate::input::Pair;
+use crate::landmarks::doctor;
+use crate::landmarks::label;
+use crate::landmarks::mirror::mirror;
+use crate::landmarks::suggest::suggest;
+use crate::landmarks::text::{write, Form, Places};
+use crate::output::{check_distinct, check_writable, say, warn};
+
+#[derive(Debug, clap::Args)]
+pub(crate) struct Args {
+    #[command(subcommand)]
+    task: Task,
+}
+
+#[derive(Debug, Subcommand)]
+enum Task {
+    /// Tell how far each landmark is from where the others expect it, and what looks wrong; exit code 1 if anything does
+    Check(Files),
+    /// Tell where one more landmark would help most
+    Suggest(Suggest),
+    /// Add the landmarks of the other half of a symmetric source
+    Mirror(Output),
+    /// Write landmarks in another form
+    Convert(Output),
+}
+
+#[derive(Debug, clap::Args)]
+struct Files {
+    /// Mesh to deform
+    source: PathBuf,
+    /// Mesh or point cloud to drape it over
+    target: PathBuf,
+    /// Places that belong together: JSON, or lines of numbers
+    landmarks: PathBuf,
+    /// Print JSON
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Debug, clap::Args)]
+struct Suggest {
+    #[command(flatten)]
+    files: Files,
+    /// How many
+    #[arg(short, long, value_name = "N", default_value_t = 3)]
+    number: usize,
+}
+
+#[derive(Debug, clap::Args)]
+struct Output {
+    #[command(flatten)]
+    files: Files,
+    /// File to write
+    #[arg(short, long, value_name = "OUT")]
+    output: PathBuf,
+    /// How to write it; where not given, the extension tells: json, else lines of source vertex, target x y z, name
+    #[arg(long, value_name = "FORM")]
+    to: Option<Form>,
+}
+
+impl Files {
+    fn read(&self) -> anyhow::Result<Pair> {
+        Pair::read(&self.source, &self.target, Some(&self.landmarks))
+    }
+}
+
+pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
+    match &args.task {
+        Task::Check(files) => check(files),
+        Task::Suggest(args) => next(args),
+        Task::Mirror(args) => add_mirrored(args),
+        Task::Convert(args) => {
+            args.check()?;
+            let pair = args.files.read()?;
+            args.write(&pair, &pair.landmarks)
+        }
+    }
+}
+
+fn check(files: &Files) -> anyhow::Result<ExitCode> {
+    let pair = files.read()?;
+    let residuals = doctor::left_out_residuals(&pair);
+    let findings = doctor::examine(&pair);
+    if files.json {
+        let list: Vec<_> = pair
+            .landmarks
+            .iter()
+            .zip(&residuals)
+            .map(|(l, r)| serde_json::json!({ "name": l.name, "left_out_residual": r }))
+            .collect();
+        let json = serde_json::json!({ "landmarks": list, "findings": findings });
+        say(&format!("{json:#}\n"))?;
+    } else {
+        let mut text = String::from(
+            "distance from where the other landmarks expect each, in % of the target's longest side\n",
+        );
+        for (k, (l, residual)) in pair.landmarks.iter().zip(&residuals).enumerate() {
+            let _ = writeln!(
+                text,
+                "{:>8.2}  {}",
+                100.0 * residual,
+                label(k, l.name.as_deref())
+            );
+        }
+        for finding in &findings {
+            let _ = writeln!(text, "look at this: {finding}");
+        }
+        if findings.is_empty() {
+            text += "nothing looks wrong\n";
+        }
+        say(&text)?;
+    }
+    Ok(ExitCode::from(u8::from(!findings.is_empty())))
+}
+
+fn next(args: &Suggest) -> anyhow::Result<ExitCode> {
+    let pair = args.files.read()?;
+    let suggestions = suggest(&pair, args.number)?;
+    if args.files.json {
+        let list: Vec<_> = suggestions
+            .iter()
+            .map(|s| {
+                let target: [f64; 3] = s.target.coords.into();
+                serde_json::json!({
+                    "source": { "vertex": s.vertex.index() },
+                    "target": { "point": target },
+                    "distance_to_landmarks": s.alone.is_finite().then_some(s.alone),
+                    "initial_miss": s.missed,
+                })
+            })
+            .collect();
+        say(&format!(
+            "{:#}\n",
+            serde_json::json!({ "suggestions": list })
+        ))?;
+        return Ok(ExitCode::SUCCESS);
+    }
+    let mut text = String::new();
+    for s in &suggestions {
+        let at = pair.source.rest[s.vertex];
+        let alone = if s.alone.is_finite() {
+            format!(
+                "{:.0} % of the source's longest side from the nearest landmark",
+                100.0 * s.alone
+            )
+        } else {
+            "on a piece without a landmark".to_owned()
+        };
+        let _ = writeln!(
+            text,
+            "source vertex {} at ({:.4}, {:.4}, {:.4}): {alone}; the landmarks so far bring it {:.1} % of the \
+             target's longest side away from the target, nearest at ({:.4}, {:.4}, {:.4})",
+            s.vertex.index(),
+            at.x,
+            at.y,
+            at.z,
+            100.0 * s.missed,
+            s.target.x,
+            s.target.y,
+            s.target.z
+        );
+    }
+    say(&text)?;
+    Ok(ExitCode::SUCCESS)
+}
+
+fn add_mirrored(args: &Output) -> anyhow::Result<ExitCode> {
+    args.check()?;
+    let pair = args.files.read()?;
+    let (added, plane) = mirror(&pair)?;
+    let n = plane.normal;
+    let mut text = format!(
+        "mirrored across the plane through ({:.4}, {:.4}, {:.4}) with normal ({}, {}, {}); {} added\n",
+        plane.point.x,
+        plane.point.y,
+        plane.point.z,
+        n.x,
+        n.y,
+        n.z,
+        added.len()
+    );
+    for l in &added {
+        let _ = writeln!(text, "  {}", l.name.as_deref().unwrap_or_default());
+    }
+    say(&text)?;
+    let all: Vec<Landmark> = pair.landmarks.iter().chain(&added).cloned().collect();
+    args.write(&pair, &all)
+}
+
+impl Output {
+    fn check(&self) -> anyhow::Result<()> {
+        let files = &self.files;
+        ensure!(!files.json, "--json goes with check and suggest");
+        check_writable(&self.output)?;
+        let inputs: [&Path; 3] = [&files.source, &files.target, &files.landmarks];
+        check_distinct(&self.output, &inputs)
+    }
+
+    fn form(&self) -> Form {
+        let is_json = self
+            .output
+            .extension()
+            .is_some_and(|e| e.eq_ignore_ascii_case("json"));
+        self.to
+            .unwrap_or(if is_json { Form::Json } else { Form::Text })
+    }
+
+    fn write(&self, pair: &Pair, landmarks: &[Landmark]) -> anyhow::Result<ExitCode> {
+        let places = Places {
+            rest: &pair.source.rest,
+            target: &pair.target.vertices,
+        };
+        let (text, moved) = write(landmarks, &places, self.form());
+        let side = Aabb::of(pair.source.rest.iter()).longest_side();
+        if moved > 1e-6 * side {
+            warn(&[format!(
+                "this form holds vertices only: places moved to the nearest one, by up to {moved:.4}"
+            )]);
+        }
+        write_atomic(&self.output, text.as_bytes())?;
+        say(&format!("wrote {}\n", self.output.display()))?;
+        Ok(ExitCode::SUCCESS)
+    }
+}
