@@ -123,6 +123,33 @@ pub fn leave_one_out_residuals(
         .collect()
 }
 
+/// A pair that counts as `weight` pairs, in boxes of longest side 1.
+pub(crate) struct WeightedPair {
+    pub(crate) source: Vector3,
+    pub(crate) target: Vector3,
+    pub(crate) weight: f64,
+}
+
+/// Matrix and translation of the map of least squares, drawn to a similarity by `mu`.
+pub(crate) fn least_squares(
+    pairs: impl Iterator<Item = WeightedPair>,
+    mu: f64,
+) -> (Matrix3<f64>, Vector3) {
+    let (mut moments, mut total) = (Moments::of(&[]), 0.0);
+    for WeightedPair {
+        source,
+        target,
+        weight,
+    } in pairs
+    {
+        moments = moments.plus(&UnitPair { source, target }, weight);
+        total += weight;
+    }
+    // The prior is a length: it counts against the mean of the pairs, whatever their number.
+    let map = UnitMap::fit(&moments, mu * total);
+    (map.linear, map.translation)
+}
+
 fn best_prior(unit: &[UnitPair]) -> f64 {
     let errors = PRIORS.map(|mu| left_out_errors(unit, mu).map(|e| e * e).sum::<f64>().sqrt());
     let least = errors.iter().copied().fold(f64::INFINITY, f64::min);

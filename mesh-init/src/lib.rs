@@ -5,6 +5,7 @@
 //! | get the shape that draping starts at | [`initialize`] |
 //! | deform a result further when landmarks are added | [`adjust`] |
 //! | fit as much of an affine map as landmarks determine | [`fit_affine`] |
+//! | find how the source stands, without landmarks | [`find_pose`] |
 //! | find landmarks that disagree with the others | [`leave_one_out_residuals`] |
 //! | spread displacements smoothly | [`biharmonic_displacement`] |
 //! | spread rotations and scales smoothly | [`SimilarSolver`] |
@@ -28,6 +29,7 @@ mod biharmonic;
 mod cells;
 mod error;
 mod initialize;
+mod pose;
 mod reach;
 mod rotation;
 mod similar;
@@ -42,4 +44,5 @@ pub use error::InitError;
 pub use initialize::{
     adjust, initialize, point_pairs, InitConfig, InitInput, Initial, Pinning, Spread,
 };
+pub use pose::{find_pose, Pose, PoseInput};
 pub use similar::{SimilarConfig, SimilarSolver};

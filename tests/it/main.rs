@@ -2,6 +2,7 @@
 
 mod bad_input;
 mod commands;
+mod landmarks;
 mod real_pair;
 mod seams;
 mod suite;

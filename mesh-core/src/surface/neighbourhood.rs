@@ -42,6 +42,8 @@ pub(super) struct Neighbourhood {
     pub(super) nearest: [u32; N_KEPT],
     /// Mean squared distance to the neighbours: proportional to the area the point stands for.
     pub(super) area: f64,
+    /// How flat the neighbours lie, from 0 (they fill space, and the normal means nothing) to 1; 1 for a given normal.
+    pub(super) flatness: f64,
     /// Whether neighbours leave a wide gap around the normal.
     has_gap: bool,
 }
@@ -155,9 +157,10 @@ fn neighbourhood(
         .iter()
         .map(|&n| points[n as usize] - points[row])
         .collect();
-    let normal = given
-        .filter(|n| *n != Vector3::zeros())
-        .unwrap_or_else(|| plane_normal(&offsets[..offsets.len().min(N_IN_PLANE)]));
+    let (normal, flatness) = match given.filter(|n| *n != Vector3::zeros()) {
+        Some(normal) => (normal, 1.0),
+        None => plane_normal(&offsets[..offsets.len().min(N_IN_PLANE)]),
+    };
     let mut nearest = [NONE; N_KEPT];
     for (kept, &n) in nearest.iter_mut().zip(neighbours) {
         *kept = n;
@@ -166,12 +169,14 @@ fn neighbourhood(
         normal,
         nearest,
         area: offsets.iter().map(Vector3::norm_squared).sum::<f64>() / offsets.len().max(1) as f64,
+        flatness,
         has_gap: widest_gap(&offsets, &normal) > WIDE,
     }
 }
 
-/// The direction in which the point and its neighbours spread least; zero where they lie on a line.
-fn plane_normal(offsets: &[Vector3]) -> Vector3 {
+/// The direction in which the point and its neighbours spread least, zero where they lie on a line, and how flat they
+/// lie: `1 − 4 λ₀/λ₁` of the least and the middle spread, at least 0.
+fn plane_normal(offsets: &[Vector3]) -> (Vector3, f64) {
     let mean = offsets.iter().sum::<Vector3>() / (offsets.len() + 1) as f64;
     let spread = offsets
         .iter()
@@ -184,9 +189,11 @@ fn plane_normal(offsets: &[Vector3]) -> Vector3 {
     order.sort_by(|&a, &b| eigen.eigenvalues[a].total_cmp(&eigen.eigenvalues[b]));
     let [least, middle, most] = order;
     if eigen.eigenvalues[middle] > LINE * eigen.eigenvalues[most] {
-        eigen.eigenvectors.column(least).into_owned()
+        let thickness = eigen.eigenvalues[least].max(0.0) / eigen.eigenvalues[middle];
+        let normal = eigen.eigenvectors.column(least).into_owned();
+        (normal, (1.0 - 4.0 * thickness).max(0.0))
     } else {
-        Vector3::zeros()
+        (Vector3::zeros(), 0.0)
     }
 }
 

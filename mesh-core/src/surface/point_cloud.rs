@@ -30,6 +30,8 @@ pub struct PointCloud {
     strays: Vec<u32>,
     /// Root of the mean squared distance to the neighbours of each point.
     spacing: Vec<f64>,
+    /// How flat the neighbours of each point lie, 0..=1.
+    flatness: Vec<f64>,
     bounds: Aabb,
 }
 
@@ -49,6 +51,7 @@ impl PointCloud {
         Ok(Self {
             is_on_boundary: boundary(&around),
             strays: strays(&around),
+            flatness: around.iter().map(|n| n.flatness).collect(),
             spacing: around.iter().map(|n| n.area.sqrt()).collect(),
             normals: around.into_iter().map(|n| n.normal).collect(),
             tree,
@@ -77,6 +80,11 @@ impl PointCloud {
     /// Root of the mean squared distance of each point to its 24 nearest.
     pub(super) fn spacing(&self) -> &[f64] {
         &self.spacing
+    }
+
+    /// How flat the neighbours of each point lie, 0..=1; 1 where the normal was given.
+    pub(super) fn flatness(&self) -> &[f64] {
+        &self.flatness
     }
 
     /// Whether there is no point: never.

@@ -7,13 +7,14 @@ use rand::{Rng, RngCore};
 use super::{Location, NormalSign, PointCloud, SurfacePoint, SurfaceSample, TargetSurface};
 use crate::{Aabb, Point3, Vector3};
 
-/// Radius of a disc as a share of the mean distance to the neighbours: so far a cloud's points stand for its surface.
-const RADIUS: f64 = 0.5;
+/// Radius of a disc as a share of the mean distance to the neighbours: so far a cloud's points stand for its surface where it is flat.
+const RADIUS: f64 = 0.7;
 
 /// A cloud whose points are discs across their normals, with the area that the spacing of the points gives them.
 ///
 /// Closest points lie between the points of the cloud, and samples are uniform by area however uneven the cloud. The
-/// disc of the nearest point is asked, not every disc; a point without a normal stays a point.
+/// disc of the nearest point is asked, not every disc. Where neighbours do not lie flat, as on a thin tail of few points,
+/// discs shrink to points.
 pub struct SurfelCloud {
     cloud: Arc<PointCloud>,
     /// Area up to and including each point.
@@ -47,7 +48,8 @@ impl TargetSurface for SurfelCloud {
         };
         let offset = query - nearest.point;
         let along: Vector3 = offset - normal * normal.dot(&offset);
-        let radius = RADIUS * self.cloud.spacing()[index as usize];
+        let row = index as usize;
+        let radius = RADIUS * self.cloud.spacing()[row] * self.cloud.flatness()[row];
         let length = along.norm();
         let share = if length > radius {
             radius / length
