@@ -1,7 +1,7 @@
 //! Where a drape starts: the initial deformation, chosen by name.
 
-use mesh_core::Positions;
-use mesh_init::{initialize, InitConfig, InitInput};
+use mesh_core::{Aabb, Positions};
+use mesh_init::{find_pose, initialize, point_pairs, InitConfig, InitInput, Pose, PoseInput};
 use serde::{Deserialize, Serialize};
 
 use crate::input::Pair;
@@ -29,21 +29,82 @@ impl Start {
     }
 }
 
-/// The source of `pair`, brought to its landmarks.
-pub(crate) fn deform(pair: &Pair, start: Start) -> anyhow::Result<Positions> {
+/// Fewer landmarks leave the way the source stands open: it is searched.
+const ENOUGH_TO_STAND: usize = 3;
+
+/// A source brought to its landmarks.
+pub(crate) struct Initial {
+    /// In the target's coordinates.
+    pub(crate) positions: Positions,
+    /// What had to be assumed, in words.
+    pub(crate) assumed: Vec<String>,
+}
+
+/// The source of `pair`, brought to its landmarks; where these are too few, in the pose that fits best.
+pub(crate) fn deform(pair: &Pair, start: Start) -> anyhow::Result<Initial> {
+    let pose = (pair.landmarks.len() < ENOUGH_TO_STAND)
+        .then(|| pose(pair))
+        .flatten();
+    let placed = match &pose {
+        Some(pose) => pair.source.rest.map(|p| pose.apply(p)),
+        None => pair.source.rest.clone(),
+    };
     let input = InitInput {
         mesh: &pair.source.mesh,
-        rest: &pair.source.rest,
+        rest: &placed,
         landmarks: &pair.landmarks,
-        target_bounds: pair.target.surface.bounds(),
+        target_bounds: match &pose {
+            Some(_) => Aabb::of(placed.iter()),
+            None => pair.target.surface.bounds(),
+        },
     };
-    let initial = match start {
-        Start::Standard => initialize(input, &InitConfig::standard())?,
-        Start::Paper => initialize(input, &InitConfig::paper())?,
+    let positions = match start {
+        Start::Standard => initialize(input, &InitConfig::standard())?.positions,
+        Start::Paper => initialize(input, &InitConfig::paper())?.positions,
         Start::Affine => {
             let affine = initialize(input, &InitConfig::paper())?.affine;
-            return Ok(pair.source.rest.map(|p| affine.apply(p)));
+            placed.map(|p| affine.apply(p))
         }
     };
-    Ok(initial.positions)
+    let assumed = pose.iter().flat_map(|p| assumed(p, pair.landmarks.len()));
+    Ok(Initial {
+        assumed: assumed.collect(),
+        positions,
+    })
+}
+
+fn pose(pair: &Pair) -> Option<Pose> {
+    find_pose(PoseInput {
+        triangulation: &pair.source.triangulation,
+        rest: &pair.source.rest,
+        target: pair.target.over.as_ref(),
+        landmarks: &point_pairs(&pair.landmarks, &pair.source.rest),
+        seed: 0,
+    })
+}
+
+/// What was assumed about the way the source stands.
+fn assumed(pose: &Pose, n_landmarks: usize) -> Vec<String> {
+    let by = match n_landmarks {
+        0 => "no landmarks: the way the source stands was found by its shape alone".to_owned(),
+        1 => "1 landmark: the way the source stands was found by its shape".to_owned(),
+        n => format!("{n} landmarks: the way the source stands was found by its shape"),
+    };
+    let turn = if pose.turn_deg < 5.0 {
+        "as the files stand".to_owned()
+    } else {
+        format!("turned by {:.0}°", pose.turn_deg)
+    };
+    let mut lines = vec![format!(
+        "{by} ({turn}, {:.1} % of the longest side off on the mean); look at the picture",
+        100.0 * pose.cost
+    )];
+    lines.extend(pose.rival.map(|(angle, cost)| {
+        format!(
+            "turned by another {angle:.0}° the source fits nearly as well ({:.1} % off): mark two or three places to \
+             decide which is front",
+            100.0 * cost
+        )
+    }));
+    lines
 }

@@ -7,7 +7,7 @@ use mesh_metrics::{EvaluationConfig, EvaluationInput, Report};
 use neural_drape::network::NetworkMap;
 use neural_drape::{Drape, DrapeInput, Warp, WarpInput};
 
-use crate::initial::deform;
+use crate::initial::{deform, Initial};
 use crate::input::Pair;
 use crate::progress::{History, Progress};
 use crate::settings::Settings;
@@ -22,8 +22,8 @@ pub(crate) struct Run {
     pub(crate) draped: Positions,
     pub(crate) report: Report,
     pub(crate) history: History,
-    /// Which parts of either shape were left out, in words.
-    pub(crate) left_out: Vec<String>,
+    /// What was assumed, and which parts of either shape were left out, in words.
+    pub(crate) notes: Vec<String>,
     /// Seconds of each stage.
     pub(crate) stages: Vec<(&'static str, f64)>,
     pub(crate) usage: Usage,
@@ -40,7 +40,10 @@ impl Run {
         watch: &Stopwatch,
     ) -> anyhow::Result<Self> {
         let mut clock = StageClock::start();
-        let initial = deform(pair, settings.start)?;
+        let Initial {
+            positions: initial,
+            assumed: mut notes,
+        } = deform(pair, settings.start)?;
         clock.lap("initial deformation");
         let drape = drape(pair, &settings, &initial)?;
         clock.lap("drape");
@@ -53,7 +56,10 @@ impl Run {
             draped: drape.positions,
             network: drape.network,
             history: drape.history,
-            left_out: drape.left_out,
+            notes: {
+                notes.extend(drape.left_out);
+                notes
+            },
             report,
             stages: clock.laps,
             usage: watch.read(),

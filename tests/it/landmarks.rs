@@ -69,7 +69,7 @@ fn mirror_adds_the_other_half() {
     let list = whole["landmarks"].as_array().expect("a list");
     assert_eq!(list.len(), 5);
     let x = list[4]["target"]["point"][0].as_f64().expect("a number");
-    assert!((x - 7.2).abs() < 0.3, "{x}");
+    assert!((x - 7.2).abs() < 0.05, "{x}");
 }
 
 #[test]
@@ -83,14 +83,21 @@ fn converted_landmarks_give_the_same_drape() {
             .well();
     }
     place.transfer("").well();
-    let expected = place.read("out.obj");
+    let positions = |name: &str| io::read_soup(place.path(name)).expect("a result").positions;
+    let expected = positions("out.obj");
     for name in ["a.txt", "b.json"] {
         place
             .drape(&format!(
                 "transfer source.obj target.ply -l {name} --config short.toml -o again.obj"
             ))
             .well();
-        assert!(place.read("again.obj") == expected, "{name}");
+        // Places in faces come back to the last digits only, and those are amplified by twelve steps.
+        let far = positions("again.obj")
+            .iter()
+            .zip(&expected)
+            .map(|(a, b)| (a - b).norm())
+            .fold(0.0, f64::max);
+        assert!(far < 1e-4, "{name}: {far}");
     }
     let ids = place
         .drape("landmarks convert source.obj target.ply landmarks.json --to ids -o ids.txt")

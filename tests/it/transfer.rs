@@ -121,7 +121,7 @@ fn clouds_and_other_formats_are_draped_over_and_written() {
 }
 
 #[test]
-fn without_landmarks_the_boxes_are_aligned() {
+fn without_landmarks_the_shapes_are_laid_over_each_other() {
     let place = Workplace::new();
     let ended = place
         .drape("transfer source.obj target.ply --config short.toml -o out.obj --json")

@@ -66,8 +66,10 @@ pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let mut warnings = pair.warnings();
     warnings.extend(args.morphs.left_behind(&pair.file, &args.output));
     warnings.extend(pair.file.lost_in(&args.output));
+    let initial = deform(&pair, args.initial)?;
+    warnings.extend(initial.assumed);
     warn(&warnings);
-    let positions = deform(&pair, args.initial)?;
+    let positions = initial.positions;
     let report = judge(&pair, &positions, truth.as_ref())?;
     pair.file
         .write(&args.output, &pair.source.spread(&positions))?;

@@ -82,8 +82,8 @@ pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
     warnings.extend(pair.file.lost_in(&args.output));
     warn(&warnings);
     let run = Run::new(&pair, settings, truth.as_ref(), &watch)?;
-    warn(&run.left_out);
-    warnings.extend(run.left_out.iter().cloned());
+    warn(&run.notes);
+    warnings.extend(run.notes.iter().cloned());
     let done = Done {
         args,
         pair,

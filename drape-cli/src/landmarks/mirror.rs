@@ -2,6 +2,7 @@
 
 use anyhow::ensure;
 use mesh_core::{Aabb, Landmark, MeshPoint, Point3, Positions, TriangleBvh, Vector3};
+use nalgebra::{Matrix3, SymmetricEigen};
 
 use super::file::label;
 use crate::input::Pair;
@@ -11,6 +12,10 @@ use crate::similarity::{fit, Match};
 const SYMMETRIC: f64 = 0.01;
 /// Places nearer to each other than this share of the longest side are one.
 const SAME: f64 = 0.01;
+/// Places that spread less across their line than this share of the spread along it, squared, span no plane.
+const SPANNED: f64 = 0.01;
+/// A plane through landmarks is believed if its normal is this near to where the similarity takes the source's.
+const ALIKE: f64 = 0.8;
 /// Vertices that the symmetry is measured at.
 const N_PROBES: usize = 2000;
 
@@ -30,8 +35,7 @@ impl Plane {
 
 /// The landmarks that `pair` lacks on the other side, and the plane of the source.
 ///
-/// The source's plane is carried to the target by the similarity of all landmarks; mirrored places are moved to the
-/// nearest place of the surface. Landmarks on the plane, or whose counterpart is there already, give none.
+/// Mirrored places are moved to the nearest place of the target's surface. Landmarks on the plane, or whose counterpart is there already, give none.
 pub(crate) fn mirror(pair: &Pair) -> anyhow::Result<(Vec<Landmark>, Plane)> {
     ensure!(
         pair.landmarks.len() >= 3,
@@ -46,20 +50,7 @@ pub(crate) fn mirror(pair: &Pair) -> anyhow::Result<(Vec<Landmark>, Plane)> {
         100.0 * plane.misfit
     );
     let side = Aabb::of(rest.iter()).longest_side();
-    let matches: Vec<Match> = pair
-        .landmarks
-        .iter()
-        .map(|l| Match {
-            from: l.source.position(rest),
-            to: l.target,
-        })
-        .collect();
-    let map = fit(&matches);
-    let target_plane = Plane {
-        normal: map.turn * plane.normal,
-        point: map.apply(&plane.point),
-        misfit: 0.0,
-    };
+    let target_plane = target_plane(pair, &plane, SAME * side);
     let mut added: Vec<Landmark> = Vec::new();
     for (k, l) in pair.landmarks.iter().enumerate() {
         let at = plane.mirror(&l.source.position(rest));
@@ -79,6 +70,50 @@ pub(crate) fn mirror(pair: &Pair) -> anyhow::Result<(Vec<Landmark>, Plane)> {
         });
     }
     Ok((added, plane))
+}
+
+/// The plane of the target: that of the landmarks on the source's plane where they span one, else the source's plane
+/// carried by the similarity of all landmarks.
+fn target_plane(pair: &Pair, plane: &Plane, near: f64) -> Plane {
+    let rest = &pair.source.rest;
+    let matches: Vec<Match> = pair
+        .landmarks
+        .iter()
+        .map(|l| Match {
+            from: l.source.position(rest),
+            to: l.target,
+        })
+        .collect();
+    let map = fit(&matches);
+    let turned = map.turn * plane.normal;
+    let on_plane: Vec<Vector3> = matches
+        .iter()
+        .filter(|m| plane.normal.dot(&(m.from - plane.point)).abs() < near)
+        .map(|m| m.to.coords)
+        .collect();
+    let mean = on_plane.iter().sum::<Vector3>() / on_plane.len().max(1) as f64;
+    let spread: Matrix3<f64> = on_plane
+        .iter()
+        .map(|p| (p - mean) * (p - mean).transpose())
+        .sum();
+    let eigen = SymmetricEigen::new(spread);
+    let least = eigen.eigenvalues.imin();
+    let normal = eigen.eigenvectors.column(least).into_owned();
+    let mut sorted: Vec<f64> = eigen.eigenvalues.iter().copied().collect();
+    sorted.sort_by(f64::total_cmp);
+    let is_plane = on_plane.len() >= 3 && sorted[1] > SPANNED * sorted[2];
+    if is_plane && normal.dot(&turned).abs() > ALIKE {
+        return Plane {
+            normal,
+            point: mean.into(),
+            misfit: 0.0,
+        };
+    }
+    Plane {
+        normal: turned,
+        point: map.apply(&plane.point),
+        misfit: 0.0,
+    }
 }
 
 /// A vertex where one is near, else the place in a face.

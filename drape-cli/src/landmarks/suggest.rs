@@ -26,7 +26,7 @@ const MISS_WEIGHT: f64 = 2.0;
 /// deformation misses the target, each as a share of the longest side of its box.
 pub(crate) fn suggest(pair: &Pair, n: usize) -> anyhow::Result<Vec<Suggestion>> {
     let (source, target) = (&pair.source, &pair.target.surface);
-    let initial = deform(pair, Start::Standard)?;
+    let initial = deform(pair, Start::Standard)?.positions;
     let side = target.bounds().longest_side();
     let hits = target.closest_points(initial.as_slice());
     let missed: VertexData<f64> = hits
