@@ -127,7 +127,12 @@ fn left_out(drape: &Drape<'_>) -> Vec<String> {
     let (beyond, overlap) = (drape.beyond(), drape.overlap());
     [
         (overlap.target_exceeds, beyond.of_target, "target", "source"),
-        (overlap.mesh_exceeds, beyond.of_mesh, "source", "target"),
+        (
+            drape.is_mesh_part_left_out(),
+            beyond.of_mesh,
+            "source",
+            "target",
+        ),
     ]
     .into_iter()
     .filter(|&(is_left_out, ..)| is_left_out)

@@ -14,7 +14,9 @@ use rand_chacha::ChaCha8Rng;
 use crate::config::{
     AngleReference, Descent, DrapeConfig, OverlapMode, ParametrizationConfig, Stage, Weights,
 };
+use crate::coverage::{area_share, uncovered};
 use crate::network::{Network, NetworkMap};
+use crate::regions::{Guidance, Regions};
 use crate::{DrapeError, DrapeState, Parametrization, Vertices};
 
 /// Random places on each shape that tell how far it reaches beyond the other.
@@ -23,6 +25,8 @@ const N_BEYOND: usize = 4000;
 const FAR_BEYOND: f64 = 0.03;
 /// A shape of which less than this share lies beyond is taken as whole.
 const LEAST_BEYOND: f64 = 0.05;
+/// Pieces that follow the space around them do so every this many iterations, and at the end.
+const CARRY_EVERY: usize = 100;
 
 /// What is draped over what.
 #[derive(Clone, Copy)]
@@ -73,6 +77,9 @@ pub struct Drape<'a> {
     structure: Structure<'a>,
     beyond: Beyond,
     overlap: Overlap,
+    input: DrapeInput<'a>,
+    is_uncovered: VertexData<bool>,
+    guidance: Guidance,
     iteration: usize,
     n_iterations: usize,
     gradient: VertexData<Vector3>,
@@ -111,10 +118,23 @@ impl<'a> Drape<'a> {
         };
         let mut rng = ChaCha8Rng::seed_from_u64(config.seed);
         let mut matcher = SurfaceMatcher::new(input.triangulation, &initial, input.target, frame);
-        let beyond = matcher.beyond(&initial, N_BEYOND, FAR_BEYOND, &mut rng);
+        let mut beyond = matcher.beyond(&initial, N_BEYOND, FAR_BEYOND, &mut rng);
+        let overlap = overlap(config.overlap, &beyond);
+        let is_uncovered = lacking(&input, &initial, &frame, config.overlap, &mut beyond);
+        let none = Regions::none(initial.len());
+        let guidance = Guidance::new(
+            input.triangulation,
+            input.rest,
+            &initial,
+            &none,
+            &is_uncovered,
+        );
         let mut drape = Self {
             beyond,
-            overlap: overlap(config.overlap, &beyond),
+            overlap,
+            input,
+            is_uncovered,
+            guidance,
             frame,
             parametrization,
             landmarks: Vec::new(),
@@ -149,6 +169,9 @@ impl<'a> Drape<'a> {
         let sampling = self.config.sampling.at(self.iteration, self.overlap);
         let x = self.parametrization.positions();
         let matches = self.matcher.resample(x, &sampling, &mut self.rng);
+        let matches = self
+            .guidance
+            .weighted(matches, x, self.overlap.mesh_exceeds);
 
         let mut terms = self.add_distance_terms(&matches, &weights);
         if self.config.descent == Descent::Alternating {
@@ -158,6 +181,7 @@ impl<'a> Drape<'a> {
         self.descend(rate)?;
 
         self.iteration += 1;
+        self.settle()?;
         Ok(Some(StepReport {
             iteration: self.iteration - 1,
             n_iterations: self.n_iterations,
@@ -171,6 +195,34 @@ impl<'a> Drape<'a> {
         self.parametrization
             .positions()
             .map(|p| self.frame.from_unit(p))
+    }
+
+    /// Treats parts of the source as free or rigid from now on. Rigid ones take their shape at once.
+    ///
+    /// # Errors
+    /// Not one entry per vertex, or an attraction outside 0..=1; nothing changed.
+    pub fn set_regions(&mut self, regions: &Regions) -> Result<(), DrapeError> {
+        regions.check(self.gradient.len())?;
+        let initial = self.input.initial.map(|p| self.frame.to_unit(p));
+        self.guidance = Guidance::new(
+            self.input.triangulation,
+            self.input.rest,
+            &initial,
+            regions,
+            &self.is_uncovered,
+        );
+        self.settle()
+    }
+
+    /// Puts bodies and carried pieces where they belong.
+    fn settle(&mut self) -> Result<(), DrapeError> {
+        let is_last = self.iteration == self.n_iterations;
+        let with_pieces = is_last || self.iteration.is_multiple_of(CARRY_EVERY);
+        let x = self.parametrization.positions();
+        if let Some(moves) = self.guidance.correction(x, with_pieces)? {
+            self.parametrization.displace(&moves);
+        }
+        Ok(())
     }
 
     /// Replaces the landmarks from the next step on.
@@ -287,6 +339,11 @@ impl<'a> Drape<'a> {
         self.beyond
     }
 
+    /// Whether parts of the mesh without a counterpart on the target are left out, beside those beyond its boundary.
+    pub fn is_mesh_part_left_out(&self) -> bool {
+        self.overlap.mesh_exceeds || self.is_uncovered.iter().any(|&u| u)
+    }
+
     /// Which parts beyond are left out.
     pub fn overlap(&self) -> Overlap {
         self.overlap
@@ -376,6 +433,27 @@ impl<'a> Structure<'a> {
             smoothness: Smoothness::new(t, initial),
         }
     }
+}
+
+/// Marks what the target lacks, where the settings let parts be left out and it is enough; `beyond` counts it.
+fn lacking(
+    input: &DrapeInput<'_>,
+    initial: &Positions,
+    frame: &UnitFrame,
+    mode: OverlapMode,
+    beyond: &mut Beyond,
+) -> VertexData<bool> {
+    let nothing = VertexData::new(initial.len(), false);
+    if matches!(mode, OverlapMode::Full | OverlapMode::SourcePartial) {
+        return nothing;
+    }
+    let lacking = uncovered(input.triangulation, initial, input.target, frame);
+    let share = area_share(input.triangulation, initial, &lacking);
+    if mode == OverlapMode::Auto && share < LEAST_BEYOND {
+        return nothing;
+    }
+    beyond.of_mesh = beyond.of_mesh.max(share);
+    lacking
 }
 
 fn overlap(mode: OverlapMode, beyond: &Beyond) -> Overlap {

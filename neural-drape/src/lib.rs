@@ -4,6 +4,7 @@
 //! | to | call |
 //! |---|---|
 //! | drape | [`Drape::new`], [`Drape::step`], [`Drape::positions`] |
+//! | keep parts of the source free or rigid | [`Regions`], [`Drape::set_regions`] |
 //! | choose how | [`DrapeConfig`] and its presets |
 //! | go on with other landmarks | [`Drape::set_landmarks`], [`Drape::displace`], [`Drape::extend`] |
 //! | keep a drape in progress | [`Drape::state`], [`Drape::restore`] |
@@ -11,11 +12,13 @@
 
 mod check;
 mod config;
+mod coverage;
 mod drape;
 mod error;
 pub mod network;
 mod parametrization;
 mod presets;
+mod regions;
 mod state;
 mod vertices;
 mod warp;
@@ -27,6 +30,7 @@ pub use config::{
 pub use drape::{Drape, DrapeInput, StepReport, TermReport};
 pub use error::DrapeError;
 pub use parametrization::Parametrization;
+pub use regions::Regions;
 pub use state::{DrapeState, StateReader, StateWriter};
 pub use vertices::{Vertices, VerticesConfig};
 pub use warp::{Warp, WarpError, WarpInput};

@@ -1,0 +1,289 @@
+//! Parts of the source that are not draped like the rest: free ones, rigid ones, and those the target lacks.
+
+use mesh_core::measure::triangle_normal;
+use mesh_core::{Positions, Triangulation, Vector3, VertexData, VertexId};
+use mesh_loss::{Matches, SurfaceMatch};
+use mesh_operators::SpaceExtension;
+use nalgebra::Matrix3;
+
+use crate::DrapeError;
+
+/// A field that carries pieces has at most this many centres.
+const MAX_CENTRES: usize = 500;
+/// Pairs whose attraction is below this do not count.
+const LEAST_ATTRACTION: f64 = 1e-6;
+
+/// How each vertex of the source is treated.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Regions {
+    /// How strongly target and vertex attract each other, 0..=1. Where it is 0 the surface is free: it attracts nothing,
+    /// and structure carries it along.
+    pub attraction: VertexData<f64>,
+    /// Vertices that move with their rigid neighbours as one body, in the shape they have at rest.
+    pub rigid: VertexData<bool>,
+}
+
+impl Regions {
+    /// Nothing is free or rigid.
+    pub fn none(n_vertices: usize) -> Self {
+        Self {
+            attraction: VertexData::new(n_vertices, 1.0),
+            rigid: VertexData::new(n_vertices, false),
+        }
+    }
+
+    /// Whether nothing is free or rigid.
+    pub fn is_none(&self) -> bool {
+        self.attraction.iter().all(|&a| a == 1.0) && !self.rigid.iter().any(|&r| r)
+    }
+
+    pub(crate) fn check(&self, n_vertices: usize) -> Result<(), DrapeError> {
+        let lengths = [
+            ("the attraction of the regions", self.attraction.len()),
+            ("the rigid regions", self.rigid.len()),
+        ];
+        if let Some(&(what, found)) = lengths.iter().find(|(_, n)| *n != n_vertices) {
+            return Err(DrapeError::LengthMismatch {
+                what,
+                found,
+                expected: n_vertices,
+            });
+        }
+        match self.attraction.iter().find(|a| !(0.0..=1.0).contains(*a)) {
+            Some(&value) => Err(DrapeError::Setting {
+                name: "attraction",
+                value,
+                expected: "between 0 and 1",
+            }),
+            None => Ok(()),
+        }
+    }
+}
+
+/// The regions of one drape, ready to be applied. Coordinates are those of the unit frame.
+pub(crate) struct Guidance {
+    attraction: VertexData<f64>,
+    bodies: Vec<Body>,
+    /// Vertices of pieces that nothing attracts: they follow the space around them.
+    carried: Vec<VertexId>,
+    /// All others.
+    led: Vec<VertexId>,
+    initial: Positions,
+    is_trivial: bool,
+}
+
+/// Vertices that move as one, and their shape about its centre, in the size it starts with.
+struct Body {
+    vertices: Vec<VertexId>,
+    shape: Vec<Vector3>,
+}
+
+impl Guidance {
+    /// `is_uncovered` marks what the target lacks; it attracts nothing either.
+    pub(crate) fn new(
+        triangulation: &Triangulation,
+        rest: &Positions,
+        initial: &Positions,
+        regions: &Regions,
+        is_uncovered: &VertexData<bool>,
+    ) -> Self {
+        let n = initial.len();
+        let attraction: VertexData<f64> = regions
+            .attraction
+            .ids()
+            .map(|v| {
+                if is_uncovered[v] {
+                    0.0
+                } else {
+                    regions.attraction[v]
+                }
+            })
+            .collect();
+        let bodies = groups(triangulation, n, |v| regions.rigid[v])
+            .into_iter()
+            .filter(|group| group.len() > 1)
+            .map(|vertices| Body::new(vertices, rest, initial))
+            .collect();
+        let is_passive = |v: &VertexId| regions.attraction[*v] == 0.0 || regions.rigid[*v];
+        let is_faced = faced(triangulation, n);
+        let mut carried: Vec<VertexId> = groups(triangulation, n, |v| is_faced[v])
+            .into_iter()
+            .filter(|piece| piece.iter().all(is_passive))
+            .flatten()
+            .collect();
+        carried.sort_unstable();
+        let mut is_carried = VertexData::new(n, false);
+        carried.iter().for_each(|&v| is_carried[v] = true);
+        let led: Vec<VertexId> = initial
+            .ids()
+            .filter(|&v| is_faced[v] && !is_carried[v])
+            .collect();
+        if led.is_empty() {
+            carried.clear();
+        }
+        Self {
+            is_trivial: attraction.iter().all(|&a| a == 1.0),
+            attraction,
+            bodies,
+            carried,
+            led,
+            initial: initial.clone(),
+        }
+    }
+
+    /// The pairs that count, by how much; with a target that is only a part, also without those whose normals oppose.
+    pub(crate) fn weighted(
+        &self,
+        mut matches: Matches,
+        x: &Positions,
+        target_is_part: bool,
+    ) -> Matches {
+        if target_is_part {
+            matches.to_target.retain(|m| !is_opposed(m, x));
+        }
+        if !self.is_trivial {
+            for way in [&mut matches.to_target, &mut matches.to_mesh] {
+                for m in way.iter_mut() {
+                    let corners = m.triangle.iter().zip(m.barycentric);
+                    m.weight *= corners.map(|(&v, w)| self.attraction[v] * w).sum::<f64>();
+                }
+                way.retain(|m| m.weight > LEAST_ATTRACTION);
+            }
+        }
+        matches
+    }
+
+    /// What each vertex of a body or a carried piece must move by to be where it belongs; none where nothing must.
+    ///
+    /// `with_pieces` also moves the pieces that follow the space around them, which takes a dense solve.
+    pub(crate) fn correction(
+        &self,
+        x: &Positions,
+        with_pieces: bool,
+    ) -> Result<Option<VertexData<Vector3>>, DrapeError> {
+        let carries = with_pieces && !self.carried.is_empty();
+        if self.bodies.is_empty() && !carries {
+            return Ok(None);
+        }
+        let mut moved = x.clone();
+        if carries {
+            let points: Vec<_> = self.led.iter().map(|&v| self.initial[v]).collect();
+            let moves: Vec<_> = self.led.iter().map(|&v| x[v] - self.initial[v]).collect();
+            let field = SpaceExtension::new(&points, &moves, MAX_CENTRES)?;
+            for &v in &self.carried {
+                moved[v] = self.initial[v] + field.displacement_at(&self.initial[v]);
+            }
+        }
+        self.bodies
+            .iter()
+            .for_each(|body| body.straighten(&mut moved));
+        Ok(Some(
+            moved.iter().zip(x.iter()).map(|(a, b)| a - b).collect(),
+        ))
+    }
+}
+
+/// Whether the mesh and the target turn their backs on each other.
+fn is_opposed(m: &SurfaceMatch, x: &Positions) -> bool {
+    let own = triangle_normal(m.triangle.map(|v| x[v]));
+    own.zip(m.normal).is_some_and(|(a, b)| a.dot(&b) < 0.0)
+}
+
+impl Body {
+    /// The shape at rest, in the size of the body at `initial`.
+    fn new(vertices: Vec<VertexId>, rest: &Positions, initial: &Positions) -> Self {
+        let shape = centred(&vertices, rest).1;
+        let now = centred(&vertices, initial).1;
+        let spread = |shape: &[Vector3]| shape.iter().map(Vector3::norm_squared).sum::<f64>();
+        let turned = nearest_rotation(&shape, &now);
+        let fitted: f64 = shape
+            .iter()
+            .zip(&now)
+            .map(|(a, b)| (turned * a).dot(b))
+            .sum();
+        let scale = if spread(&shape) > 0.0 {
+            (fitted / spread(&shape)).max(0.0)
+        } else {
+            0.0
+        };
+        Self {
+            vertices,
+            shape: shape.iter().map(|p| p * scale).collect(),
+        }
+    }
+
+    /// Puts the shape where its vertices are, turned as they are.
+    fn straighten(&self, x: &mut Positions) {
+        let (centre, now) = centred(&self.vertices, x);
+        let rotation = nearest_rotation(&self.shape, &now);
+        for (&v, p) in self.vertices.iter().zip(&self.shape) {
+            x[v] = (centre + rotation * p).into();
+        }
+    }
+}
+
+fn centred(vertices: &[VertexId], x: &Positions) -> (Vector3, Vec<Vector3>) {
+    let centre = vertices.iter().map(|&v| x[v].coords).sum::<Vector3>() / vertices.len() as f64;
+    let around = vertices.iter().map(|&v| x[v].coords - centre).collect();
+    (centre, around)
+}
+
+/// The rotation that brings `from` nearest to `to`: `U diag(1, 1, det U Vᵀ) Vᵀ` (Kabsch 1976).
+fn nearest_rotation(from: &[Vector3], to: &[Vector3]) -> Matrix3<f64> {
+    let pairs = from.iter().zip(to);
+    let svd = pairs
+        .map(|(a, b)| b * a.transpose())
+        .sum::<Matrix3<f64>>()
+        .svd(true, true);
+    let (Some(mut u), Some(v_t)) = (svd.u, svd.v_t) else {
+        return Matrix3::identity();
+    };
+    if (u * v_t).determinant() < 0.0 {
+        u.column_mut(svd.singular_values.imin()).neg_mut();
+    }
+    u * v_t
+}
+
+/// Which vertices have a triangle.
+fn faced(triangulation: &Triangulation, n: usize) -> VertexData<bool> {
+    let mut is_faced = VertexData::new(n, false);
+    for &v in triangulation.triangles().iter().flatten() {
+        is_faced[v] = true;
+    }
+    is_faced
+}
+
+/// The chosen vertices in groups that edges between chosen ones join, each ascending, in order of their first.
+fn groups(
+    triangulation: &Triangulation,
+    n: usize,
+    is_chosen: impl Fn(VertexId) -> bool,
+) -> Vec<Vec<VertexId>> {
+    let mut neighbours = VertexData::new(n, Vec::new());
+    for [a, b] in triangulation.edges() {
+        if is_chosen(a) && is_chosen(b) {
+            neighbours[a].push(b);
+            neighbours[b].push(a);
+        }
+    }
+    let mut is_seen = VertexData::new(n, false);
+    let mut groups = Vec::new();
+    for start in neighbours.ids().filter(|&v| is_chosen(v)) {
+        if std::mem::replace(&mut is_seen[start], true) {
+            continue;
+        }
+        let mut group = vec![start];
+        let mut next = 0;
+        while let Some(&v) = group.get(next) {
+            next += 1;
+            for &w in &neighbours[v] {
+                if !std::mem::replace(&mut is_seen[w], true) {
+                    group.push(w);
+                }
+            }
+        }
+        group.sort_unstable();
+        groups.push(group);
+    }
+    groups
+}
