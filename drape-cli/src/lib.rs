@@ -18,6 +18,7 @@ mod landmarks;
 mod output;
 mod progress;
 mod reading;
+mod regions;
 mod render;
 mod report;
 mod requirement;

@@ -5,7 +5,7 @@ use std::time::Instant;
 use mesh_core::{Positions, UnitFrame, VertexData};
 use mesh_metrics::{EvaluationConfig, EvaluationInput, Report};
 use neural_drape::network::NetworkMap;
-use neural_drape::{Drape, DrapeInput, Warp, WarpInput};
+use neural_drape::{Drape, DrapeInput, Regions, Warp, WarpInput};
 
 use crate::initial::{deform, Initial};
 use crate::input::Pair;
@@ -36,6 +36,7 @@ impl Run {
     pub(crate) fn new(
         pair: &Pair,
         settings: Settings,
+        regions: &Regions,
         truth: Option<&Positions>,
         watch: &Stopwatch,
     ) -> anyhow::Result<Self> {
@@ -45,7 +46,7 @@ impl Run {
             assumed: mut notes,
         } = deform(pair, settings.start)?;
         clock.lap("initial deformation");
-        let drape = drape(pair, &settings, &initial)?;
+        let drape = drape(pair, &settings, regions, &initial)?;
         clock.lap("drape");
         let report = judge(pair, &drape.positions, truth)?;
         clock.lap("figures");
@@ -145,7 +146,12 @@ fn left_out(drape: &Drape<'_>) -> Vec<String> {
     .collect()
 }
 
-fn drape(pair: &Pair, settings: &Settings, initial: &Positions) -> anyhow::Result<Draped> {
+fn drape(
+    pair: &Pair,
+    settings: &Settings,
+    regions: &Regions,
+    initial: &Positions,
+) -> anyhow::Result<Draped> {
     let input = DrapeInput {
         triangulation: &pair.source.triangulation,
         rest: &pair.source.rest,
@@ -154,6 +160,9 @@ fn drape(pair: &Pair, settings: &Settings, initial: &Positions) -> anyhow::Resul
         landmarks: &pair.landmarks,
     };
     let mut drape = Drape::new(input, settings.config.clone())?;
+    if !regions.is_none() {
+        drape.set_regions(regions)?;
+    }
     let left_out = left_out(&drape);
     let mut progress = Progress::start(drape.n_iterations());
     while let Some(step) = drape.step()? {

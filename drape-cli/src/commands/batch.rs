@@ -44,6 +44,10 @@ pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
         args.settings.preset.is_none() || args.settings.config.is_none(),
         "give --preset or --config; a config file may name its preset"
     );
+    ensure!(
+        args.settings.overlap.is_none(),
+        "batch takes --overlap from a --config file: overlap = \"full\""
+    );
     args.settings.settings()?;
     let tasks = tasks(args)?;
     let rows = suite::run(&tasks, &args.summary, &Pool::new(args.jobs)?)?;

@@ -9,6 +9,7 @@ use crate::gallery::ViewArgs;
 use crate::output::say;
 use crate::render::Up;
 use crate::seams::{MorphArgs, Morphing, Seams, WeldArgs};
+use crate::regions::RegionArgs;
 use crate::settings::SettingsArgs;
 
 #[derive(Debug, clap::Args)]
@@ -35,6 +36,7 @@ pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
         settings: args.settings.clone(),
         report: Some(name("report.html")),
         render: Some(name("draped.png")),
+        regions: RegionArgs::default(),
         view: ViewArgs {
             view: Vec::new(),
             up: Up::Y,

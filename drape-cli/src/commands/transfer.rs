@@ -10,6 +10,7 @@ use mesh_core::Positions;
 use crate::gallery::{Gallery, ViewArgs, DISTANCE_AT_TOP};
 use crate::input::{read_positions, Pair};
 use crate::output::{check_distinct, check_mesh, check_writable, say, warn};
+use crate::regions::RegionArgs;
 use crate::render::{Image, View};
 use crate::report::Page;
 use crate::requirement::Requirements;
@@ -36,6 +37,8 @@ pub(crate) struct Args {
     pub(super) morphs: MorphArgs,
     #[command(flatten)]
     pub(super) settings: SettingsArgs,
+    #[command(flatten)]
+    pub(super) regions: RegionArgs,
     /// Write a page with pictures, figures, curves and settings
     #[arg(long, value_name = "HTML")]
     pub(super) report: Option<PathBuf>,
@@ -79,9 +82,11 @@ pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
 
     let mut warnings = pair.warnings();
     warnings.extend(args.morphs.left_behind(&pair.file, &args.output));
+    let chosen = args.regions.resolve(&pair)?;
+    warnings.extend(chosen.notes);
     warnings.extend(pair.file.lost_in(&args.output));
     warn(&warnings);
-    let run = Run::new(&pair, settings, truth.as_ref(), &watch)?;
+    let run = Run::new(&pair, settings, &chosen.regions, truth.as_ref(), &watch)?;
     warn(&run.notes);
     warnings.extend(run.notes.iter().cloned());
     let done = Done {

@@ -147,6 +147,24 @@ impl MeshFile {
         Some(normals)
     }
 
+    /// The values of a scalar that a PLY file has at each vertex; none in other formats, or where it has no such one.
+    ///
+    /// ```
+    /// use mesh_core::io::MeshFile;
+    /// let text = "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\nproperty float z\n\
+    ///             property uchar mouth\nend_header\n0 0 0 1\n1 0 0 0\n";
+    /// let file = MeshFile::from_bytes("a.ply", text.into())?;
+    /// assert_eq!(file.vertex_scalars("mouth"), Some(vec![1.0, 0.0]));
+    /// assert_eq!(file.vertex_scalars("nose"), None);
+    /// # Ok::<(), mesh_core::io::ReadError>(())
+    /// ```
+    pub fn vertex_scalars(&self, name: &str) -> Option<Vec<f64>> {
+        match self.format {
+            Format::Ply => ply::vertex_scalars(&self.bytes, name).ok().flatten(),
+            _ => None,
+        }
+    }
+
     /// Writes this file with the vertices at `x`, all or nothing.
     ///
     /// In the format of the source, everything but positions and normals is kept as it was. If the extension of `path`

@@ -1,6 +1,7 @@
 //! Target surfaces: what can be draped onto. A target needs no connectivity.
 
 mod boundary;
+mod exposure;
 mod neighbourhood;
 mod orientation;
 mod point_cloud;
@@ -10,6 +11,7 @@ mod surfels;
 mod triangle_soup;
 mod weld;
 
+pub use exposure::is_exposed;
 pub use point_cloud::PointCloud;
 pub use stray::Strays;
 pub use surfels::SurfelCloud;

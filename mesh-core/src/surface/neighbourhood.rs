@@ -175,7 +175,7 @@ fn neighbourhood(
 }
 
 /// The direction in which the point and its neighbours spread least, zero where they lie on a line, and how flat they
-/// lie: `1 − 4 λ₀/λ₁` of the least and the middle spread, at least 0.
+/// lie: 1 while the least spread is below a tenth of the middle one, falling to 0 at three tenths.
 fn plane_normal(offsets: &[Vector3]) -> (Vector3, f64) {
     let mean = offsets.iter().sum::<Vector3>() / (offsets.len() + 1) as f64;
     let spread = offsets
@@ -191,7 +191,7 @@ fn plane_normal(offsets: &[Vector3]) -> (Vector3, f64) {
     if eigen.eigenvalues[middle] > LINE * eigen.eigenvalues[most] {
         let thickness = eigen.eigenvalues[least].max(0.0) / eigen.eigenvalues[middle];
         let normal = eigen.eigenvectors.column(least).into_owned();
-        (normal, (1.0 - 4.0 * thickness).max(0.0))
+        (normal, ((0.3 - thickness) / 0.2).clamp(0.0, 1.0))
     } else {
         (Vector3::zeros(), 0.0)
     }

@@ -21,7 +21,7 @@ const N_RAYS: usize = 1 << 17;
 const FEWEST_RAYS: usize = 8;
 const MOST_RAYS: usize = 1 << 12;
 /// Rays start this far off the surface, in diagonals of its box.
-const LIFT: f64 = 1e-7;
+pub(super) const LIFT: f64 = 1e-7;
 /// Shares of a patch's rays by which one side must win: to be believed, and to overrule a file whose faces agree.
 const BELIEVED: f64 = 0.05;
 const OVERRULING: f64 = 0.2;
@@ -211,7 +211,7 @@ pub(super) fn escaping_share(bvh: &TriangleBvh, patch: &[u32], n: usize) -> f64 
 }
 
 /// Whether the `k`-th ray from triangle `t` escapes on the side of its corners' order (`side` 1) or the other (−1).
-fn escapes(bvh: &TriangleBvh, t: u32, side: f64, lift: f64, k: usize) -> bool {
+pub(super) fn escapes(bvh: &TriangleBvh, t: u32, side: f64, lift: f64, k: usize) -> bool {
     let corners = bvh.triangle(t);
     let Some(normal) = area_vector(corners).try_normalize(f64::MIN_POSITIVE) else {
         return false;

@@ -3,6 +3,7 @@
 
 mod body;
 mod header;
+mod scalars;
 
 use self::body::{push_doubles, push_header, Body, Value};
 use self::header::{Element, Header, Kind, Property, Scalar};
@@ -10,6 +11,8 @@ use super::contents::{polygon_area_vector, CarriedNormals, Contents, Parsed};
 use super::error::{Fault, ReadProblem};
 use super::text::Splice;
 use crate::{Point3, PolygonSoup, Vector3};
+
+pub(super) use self::scalars::vertex_scalars;
 
 const POSITION: [&str; 3] = ["x", "y", "z"];
 const NORMAL: [&str; 3] = ["nx", "ny", "nz"];

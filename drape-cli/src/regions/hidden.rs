@@ -1,0 +1,187 @@
+//! Inner surfaces: what no ray from outside reaches.
+
+use mesh_core::surface::is_exposed;
+use mesh_core::{measure, TriangleBvh, Triangulation, VertexData, VertexId};
+use neural_drape::Regions;
+
+use super::{bvh, pieces};
+use crate::input::{Pair, Source};
+
+/// Rays from each triangle that has not been seen yet.
+const N_RAYS: usize = 48;
+/// A connected inner surface below this share of the area is a crevice, not a part.
+const LEAST_SHARE: f64 = 2e-3;
+/// A separate piece of which at least this share is hidden lies inside another: lids hide most of an eyeball.
+const INNER: f64 = 0.5;
+/// Inner parts of the target that are at least this large beside the source's are its counterparts.
+const COUNTERPART: f64 = 0.5;
+
+/// An inner surface of a source.
+pub(crate) struct Inner {
+    /// Its vertices, ascending.
+    pub(crate) vertices: Vec<VertexId>,
+    /// Its share of the area of the source.
+    pub(crate) share: f64,
+    /// Whether it is a piece of its own.
+    pub(crate) is_piece: bool,
+    /// Whether it has no open boundary: a body, not a lining.
+    pub(crate) is_closed: bool,
+}
+
+/// Separate pieces that lie mostly inside, and connected inner surfaces of the others, largest first.
+pub(crate) fn inner_surfaces(source: &Source) -> Vec<Inner> {
+    let is_seen = seen_triangles(source);
+    let areas = measure::triangle_areas(&source.triangulation, &source.rest);
+    let total: f64 = areas.iter().sum();
+    let n = source.mesh.n_vertices();
+    let (mut own, mut hidden) = (VertexData::new(n, 0.0), VertexData::new(n, 0.0));
+    for ((t, area), &seen) in source
+        .triangulation
+        .triangles()
+        .iter()
+        .zip(&areas)
+        .zip(&is_seen)
+    {
+        for &v in t {
+            own[v] += area / 3.0;
+            hidden[v] += if seen { 0.0 } else { area / 3.0 };
+        }
+    }
+    let mut found = Vec::new();
+    let mut is_taken = VertexData::new(n, false);
+    let pieces = pieces(source);
+    for piece in pieces.iter().filter(|_| pieces.len() > 1) {
+        let sum = |of: &VertexData<f64>| piece.iter().map(|&v| of[v]).sum::<f64>();
+        let (area, inside) = (sum(&own), sum(&hidden));
+        if area > 0.0 && inside >= INNER * area && area < 0.5 * total {
+            piece.iter().for_each(|&v| is_taken[v] = true);
+            found.push(Inner {
+                share: area / total,
+                is_piece: true,
+                is_closed: !piece.iter().any(|&v| source.mesh.is_boundary_vertex(v)),
+                vertices: piece.clone(),
+            });
+        }
+    }
+    let is_inside = |v: VertexId| !is_taken[v] && own[v] > 0.0 && hidden[v] == own[v];
+    for vertices in connected(source, is_inside) {
+        let share = vertices.iter().map(|&v| own[v]).sum::<f64>() / total;
+        if share >= LEAST_SHARE {
+            found.push(Inner {
+                vertices,
+                share,
+                is_piece: false,
+                is_closed: false,
+            });
+        }
+    }
+    found.sort_by(|a, b| b.share.total_cmp(&a.share));
+    found
+}
+
+/// The vertices of all inner surfaces.
+pub(super) fn vertices(source: &Source) -> VertexData<bool> {
+    let mut part = VertexData::new(source.mesh.n_vertices(), false);
+    for v in inner_surfaces(source).iter().flat_map(|i| &i.vertices) {
+        part[*v] = true;
+    }
+    part
+}
+
+/// Makes inner surfaces free that no one named, closed pieces rigid; says so.
+///
+/// Connected inner surfaces are left alone where the target has inner surfaces of comparable size itself.
+pub(super) fn add_inner_pieces(pair: &Pair, regions: &mut Regions) -> Vec<String> {
+    let source = &pair.source;
+    let is_named = |v: &VertexId| regions.rigid[*v] || regions.attraction[*v] == 0.0;
+    let inner: Vec<Inner> = inner_surfaces(source)
+        .into_iter()
+        .filter(|i| !i.vertices.iter().any(is_named))
+        .collect();
+    if inner.is_empty() {
+        return Vec::new();
+    }
+    let connected: f64 = inner.iter().filter(|i| !i.is_piece).map(|i| i.share).sum();
+    let has_counterpart = connected > 0.0 && hidden_share(pair) >= COUNTERPART * connected;
+    let (mut n_rigid, mut n_free, mut share) = (0, 0, 0.0);
+    for part in inner {
+        if !part.is_piece && has_counterpart {
+            continue;
+        }
+        share += part.share;
+        if part.is_piece && part.is_closed {
+            n_rigid += 1;
+            part.vertices.iter().for_each(|&v| regions.rigid[v] = true);
+        } else {
+            n_free += 1;
+        }
+        part.vertices
+            .iter()
+            .for_each(|&v| regions.attraction[v] = 0.0);
+    }
+    if n_rigid + n_free == 0 {
+        return Vec::new();
+    }
+    vec![format!(
+        "inner parts of the source ({:.1} % of its area) attract nothing: {n_free} carried along, {n_rigid} as rigid \
+         bodies (--free and --rigid name others, --no-hidden turns this off)",
+        100.0 * share
+    )]
+}
+
+/// Share of the target's area that no ray from outside reaches; 0 for a cloud.
+fn hidden_share(pair: &Pair) -> f64 {
+    let model = &pair.target.model;
+    let corners: Vec<_> = model
+        .facets
+        .iter()
+        .map(|f| f.corners.map(|v| model.positions[v]))
+        .collect();
+    if corners.is_empty() {
+        return 0.0;
+    }
+    let areas: Vec<f64> = corners.iter().map(|&t| measure::triangle_area(t)).collect();
+    let seen = is_exposed(&TriangleBvh::new(corners), N_RAYS);
+    let hidden: f64 = areas
+        .iter()
+        .zip(&seen)
+        .filter(|(_, &s)| !s)
+        .map(|(a, _)| a)
+        .sum();
+    hidden / areas.iter().sum::<f64>().max(f64::MIN_POSITIVE)
+}
+
+fn seen_triangles(source: &Source) -> Vec<bool> {
+    is_exposed(&bvh(source), N_RAYS)
+}
+
+/// Chosen vertices in groups that edges join, each ascending.
+fn connected(source: &Source, is_chosen: impl Fn(VertexId) -> bool) -> Vec<Vec<VertexId>> {
+    let triangulation: &Triangulation = &source.triangulation;
+    let mut neighbours = VertexData::new(source.mesh.n_vertices(), Vec::new());
+    for [a, b] in triangulation.edges() {
+        if is_chosen(a) && is_chosen(b) {
+            neighbours[a].push(b);
+            neighbours[b].push(a);
+        }
+    }
+    let mut is_seen = VertexData::new(neighbours.len(), false);
+    let mut groups = Vec::new();
+    for start in neighbours.ids().filter(|&v| is_chosen(v)) {
+        if std::mem::replace(&mut is_seen[start], true) {
+            continue;
+        }
+        let (mut group, mut next) = (vec![start], 0);
+        while let Some(&v) = group.get(next) {
+            next += 1;
+            for &w in &neighbours[v] {
+                if !std::mem::replace(&mut is_seen[w], true) {
+                    group.push(w);
+                }
+            }
+        }
+        group.sort_unstable();
+        groups.push(group);
+    }
+    groups
+}

@@ -1,0 +1,119 @@
+//! Parts by name: groups, objects, materials, PLY properties, lists of vertices.
+
+use std::fs;
+use std::path::Path;
+
+use anyhow::{bail, ensure, Context as _};
+use mesh_core::{FaceData, FaceId, VertexData, VertexId};
+
+use super::{hidden, numbered_lines};
+use crate::input::Pair;
+
+/// What selects the vertices of inner surfaces.
+const HIDDEN: &str = "hidden";
+
+/// The vertices of a part.
+pub(super) fn find(spec: &str, pair: &Pair) -> anyhow::Result<VertexData<bool>> {
+    let n = pair.source.mesh.n_vertices();
+    let part = if spec == HIDDEN {
+        hidden::vertices(&pair.source)
+    } else if let Some(name) = spec.strip_prefix("property:") {
+        property(name, pair)?.into_iter().map(|x| x > 0.5).collect()
+    } else if let Some(part) = of_faces(spec, pair) {
+        part
+    } else if Path::new(spec).is_file() {
+        let text = fs::read_to_string(spec).context("cannot be read")?;
+        let mut part = VertexData::new(n, false);
+        for (row, words) in numbered_lines(&text) {
+            for word in words {
+                part[vertex(word, n).with_context(|| format!("line {row}"))?] = true;
+            }
+        }
+        part
+    } else {
+        bail!(
+            "is neither a name in the source nor a file; there are {}",
+            names(pair)
+        );
+    };
+    ensure!(
+        part.iter().any(|&is_in| is_in),
+        "selects no vertex of the source"
+    );
+    Ok(part)
+}
+
+/// The vertices all of whose faces have the name: those it shares with other parts belong to the others.
+fn of_faces(name: &str, pair: &Pair) -> Option<VertexData<bool>> {
+    let contents = pair.file.contents();
+    let mesh = &pair.source.mesh;
+    let lists = [&contents.groups, &contents.objects, &contents.materials];
+    let found: Vec<_> = lists
+        .into_iter()
+        .flatten()
+        .filter(|named| named.name == name)
+        .collect();
+    if found.is_empty() {
+        return None;
+    }
+    let mut is_in = FaceData::new(mesh.n_faces(), false);
+    for row in found.iter().flat_map(|f| &f.faces).cloned().flatten() {
+        if row < mesh.n_faces() {
+            is_in[FaceId::new(row)] = true;
+        }
+    }
+    let mut inside = VertexData::new(mesh.n_vertices(), false);
+    let mut outside = VertexData::new(mesh.n_vertices(), false);
+    for f in mesh.faces() {
+        for &v in mesh.face_vertices(f) {
+            if is_in[f] {
+                inside[v] = true;
+            } else {
+                outside[v] = true;
+            }
+        }
+    }
+    let both = inside.iter().zip(outside.iter());
+    Some(both.map(|(&inside, &outside)| inside && !outside).collect())
+}
+
+/// The values of a PLY vertex property.
+pub(super) fn property(name: &str, pair: &Pair) -> anyhow::Result<Vec<f64>> {
+    let values = pair.file.vertex_scalars(name);
+    values.with_context(|| {
+        format!("the source has no scalar vertex property '{name}' (PLY files have)")
+    })
+}
+
+/// A vertex by its number.
+pub(super) fn vertex(word: &str, n_vertices: usize) -> anyhow::Result<VertexId> {
+    let row: usize = word
+        .parse()
+        .with_context(|| format!("'{word}' is no vertex number"))?;
+    ensure!(
+        row < n_vertices,
+        "vertex {row} does not exist: the source has {n_vertices}, counted from 0"
+    );
+    Ok(VertexId::new(row))
+}
+
+fn names(pair: &Pair) -> String {
+    let contents = pair.file.contents();
+    let lists = [
+        ("groups", &contents.groups),
+        ("objects", &contents.objects),
+        ("materials", &contents.materials),
+    ];
+    let full = lists.iter().filter(|(_, list)| !list.is_empty());
+    let texts: Vec<String> = full
+        .map(|(kind, list)| {
+            let names: Vec<&str> = list.iter().take(12).map(|n| n.name.as_str()).collect();
+            format!("the {kind} {}", names.join(", "))
+        })
+        .collect();
+    if texts.is_empty() {
+        "no names in the source".to_owned()
+    } else {
+        texts.join("; ")
+    }
+}
