@@ -98,11 +98,11 @@ impl<'a> Gallery<'a> {
     }
 
     pub(crate) fn initial(&self, positions: &Positions, view: View) -> Image {
-        self.on_target(positions, &Look::outlined(color::INITIAL), view)
+        self.on_target(positions, &Look::outlined(color::INITIAL), &[], view)
     }
 
     pub(crate) fn result(&self, positions: &Positions, view: View) -> Image {
-        self.on_target(positions, &Look::outlined(color::RESULT), view)
+        self.on_target(positions, &Look::outlined(color::RESULT), &[], view)
     }
 
     /// `values` on the mesh, dark at 0 and bright at `top`.
@@ -113,17 +113,29 @@ impl<'a> Gallery<'a> {
         top: f64,
         view: View,
     ) -> Image {
+        self.marked_heat(positions, values, top, &[], view)
+    }
+
+    /// The same with dots at `marks`, in the target's coordinates.
+    pub(crate) fn marked_heat(
+        &self,
+        positions: &Positions,
+        values: &VertexData<f64>,
+        top: f64,
+        marks: &[Point3],
+        view: View,
+    ) -> Image {
         let shares = values.iter().map(|v| v / top).collect();
-        self.on_target(positions, &Look::heat(shares), view)
+        self.on_target(positions, &Look::heat(shares), marks, view)
     }
 
     /// A mesh in the target's coordinates, framed with the target.
-    fn on_target(&self, positions: &Positions, look: &Look, view: View) -> Image {
+    fn on_target(&self, positions: &Positions, look: &Look, marks: &[Point3], view: View) -> Image {
         let model: Model = self.pair.source.model(positions);
         draw(
             &model,
             look,
-            &[],
+            marks,
             &self.pair.target.model.seen_points(),
             self.shot(view),
         )

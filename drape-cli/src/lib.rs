@@ -10,6 +10,7 @@
 
 mod commands;
 mod demo;
+mod explain;
 mod gallery;
 mod initial;
 mod input;

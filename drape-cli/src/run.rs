@@ -3,10 +3,12 @@
 use std::time::Instant;
 
 use mesh_core::{Positions, UnitFrame, VertexData};
+use mesh_loss::Overlap;
 use mesh_metrics::{EvaluationConfig, EvaluationInput, Report};
 use neural_drape::network::NetworkMap;
 use neural_drape::{Drape, DrapeInput, Regions, Warp, WarpInput};
 
+use crate::explain::{explain, Counted, Explanation};
 use crate::initial::{deform, Initial};
 use crate::input::Pair;
 use crate::progress::{History, Progress};
@@ -21,6 +23,8 @@ pub(crate) struct Run {
     /// The result, likewise.
     pub(crate) draped: Positions,
     pub(crate) report: Report,
+    /// The result in words.
+    pub(crate) explanation: Explanation,
     pub(crate) history: History,
     /// What was assumed, and which parts of either shape were left out, in words.
     pub(crate) notes: Vec<String>,
@@ -49,6 +53,12 @@ impl Run {
         let drape = drape(pair, &settings, regions, &initial)?;
         clock.lap("drape");
         let report = judge(pair, &drape.positions, truth)?;
+        let counted = Counted {
+            attraction: &drape.attraction,
+            mesh_exceeds: drape.overlap.mesh_exceeds,
+            target_exceeds: drape.overlap.target_exceeds,
+        };
+        let explanation = explain(pair, &drape.positions, &report.vertex_distances, &counted);
         clock.lap("figures");
         Ok(Self {
             frame: UnitFrame::of(pair.target.surface.bounds()),
@@ -62,6 +72,7 @@ impl Run {
                 notes
             },
             report,
+            explanation,
             stages: clock.laps,
             usage: watch.read(),
         })
@@ -121,6 +132,8 @@ struct Draped {
     history: History,
     /// Which parts were left out, in words.
     left_out: Vec<String>,
+    attraction: VertexData<f64>,
+    overlap: Overlap,
 }
 
 /// What the run takes as lying beyond the other shape.
@@ -173,6 +186,8 @@ fn drape(
         network: drape.network(),
         history: progress.finish(),
         left_out,
+        attraction: drape.attraction().clone(),
+        overlap: drape.overlap(),
     })
 }
 

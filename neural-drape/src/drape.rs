@@ -344,6 +344,11 @@ impl<'a> Drape<'a> {
         self.overlap.mesh_exceeds || self.is_uncovered.iter().any(|&u| u)
     }
 
+    /// How strongly each vertex is attracted: what [`Regions`] say, and 0 where the target has no counterpart.
+    pub fn attraction(&self) -> &VertexData<f64> {
+        self.guidance.attraction()
+    }
+
     /// Which parts beyond are left out.
     pub fn overlap(&self) -> Overlap {
         self.overlap

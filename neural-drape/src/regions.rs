@@ -131,6 +131,11 @@ impl Guidance {
         }
     }
 
+    /// How strongly target and vertex attract each other: 0 where the vertex is free or the target lacks it.
+    pub(crate) fn attraction(&self) -> &VertexData<f64> {
+        &self.attraction
+    }
+
     /// The pairs that count, by how much; with a target that is only a part, also without those whose normals oppose.
     pub(crate) fn weighted(
         &self,

@@ -10,6 +10,7 @@ use crate::output::say;
 use crate::render::Up;
 use crate::seams::{MorphArgs, Morphing, Seams, WeldArgs};
 use crate::regions::RegionArgs;
+use crate::render::Up;
 use crate::settings::SettingsArgs;
 
 #[derive(Debug, clap::Args)]

@@ -4,12 +4,13 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use anyhow::Context as _;
-use mesh_core::io;
+use mesh_core::io::{self, write_atomic};
 
 use crate::gallery::ViewArgs;
-use crate::input::read_target;
+use crate::input::{read_target, Source};
 use crate::inspection::Inspection;
 use crate::output::{check_writable, say};
+use crate::regions::hidden::inner_surfaces;
 use crate::render::{color, draw, Axes, Image, Look, Model, Shot, View};
 
 #[derive(Debug, clap::Args)]
@@ -22,6 +23,9 @@ pub(crate) struct Args {
     /// Draw it into a PNG file, from in front and from behind
     #[arg(long, value_name = "PNG")]
     render: Option<PathBuf>,
+    /// Propose inner surfaces that no ray from outside reaches, for --free and --rigid; their vertices are written to FILE
+    #[arg(long, value_name = "FILE", num_args = 0..=1, default_missing_value = "")]
+    hidden: Option<PathBuf>,
     #[command(flatten)]
     view: ViewArgs,
 }
@@ -30,15 +34,36 @@ pub(crate) struct Args {
 const PICTURE_SIZE: usize = 560;
 
 pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
-    if let Some(path) = &args.render {
+    let folder_of = |path: &&PathBuf| !path.as_os_str().is_empty();
+    for path in [&args.render, &args.hidden]
+        .into_iter()
+        .flatten()
+        .filter(folder_of)
+    {
         check_writable(path)?;
     }
     let file = io::read_mesh(&args.file)?;
     let inspection = Inspection::of(&file).with_context(|| args.file.display().to_string())?;
+    let inner = match &args.hidden {
+        Some(_) => {
+            let source = Source::of_soup(file.soup().clone())
+                .with_context(|| args.file.display().to_string())?;
+            Some(proposals(&source))
+        }
+        None => None,
+    };
     if args.json {
         say(&format!("{}\n", serde_json::to_string_pretty(&inspection)?))?;
     } else {
         say(&inspection.to_string())?;
+    }
+    if let (Some((text, list)), Some(path)) = (&inner, &args.hidden) {
+        if !args.json {
+            say(text)?;
+        }
+        if !path.as_os_str().is_empty() {
+            write_atomic(path, list.as_bytes())?;
+        }
     }
     if let Some(path) = &args.render {
         let is_cloud = file.soup().faces.is_empty();
@@ -60,4 +85,37 @@ pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
         Image::row(&pictures.collect::<Vec<_>>()).save(path)?;
     }
     Ok(ExitCode::SUCCESS)
+}
+
+/// The inner surfaces in words, and a list of their vertices as `--free` and `--rigid` read it.
+fn proposals(source: &Source) -> (String, String) {
+    let (mut text, mut list) = (String::new(), String::new());
+    let inner = inner_surfaces(source);
+    if inner.is_empty() {
+        text += "no inner surface: rays from outside reach everything\n";
+    }
+    for part in &inner {
+        let middle = part.vertices.iter().map(|&v| source.rest[v].coords);
+        let middle = middle.sum::<mesh_core::Vector3>() / part.vertices.len() as f64;
+        let (what, how) = match (part.is_piece, part.is_closed) {
+            (true, true) => ("closed piece inside", "--rigid"),
+            (true, false) => ("open piece inside", "--free"),
+            (false, _) => ("inner lining", "--free"),
+        };
+        let line = format!(
+            "{what}: {} vertices around ({:.4}, {:.4}, {:.4}), {:.1} % of the area; propose {how}",
+            part.vertices.len(),
+            middle.x,
+            middle.y,
+            middle.z,
+            100.0 * part.share
+        );
+        text += &format!("{line}\n");
+        list += &format!("# {line}\n");
+        for row in part.vertices.chunks(16) {
+            let numbers: Vec<String> = row.iter().map(|v| v.index().to_string()).collect();
+            list += &format!("{}\n", numbers.join(" "));
+        }
+    }
+    (text, list)
 }

@@ -163,13 +163,14 @@ impl Done<'_> {
         let Self { args, run, .. } = self;
         let gallery = Gallery::new(&self.pair, &run.initial, args.view.up, PNG_PICTURE);
         let distances = &run.report.vertex_distances;
+        let marks = run.explanation.marks();
         let row = |view| {
             Image::row(&[
                 gallery.source(view),
                 gallery.target(view),
                 gallery.initial(&run.initial, view),
                 gallery.result(&run.draped, view),
-                gallery.heat(&run.draped, distances, DISTANCE_AT_TOP, view),
+                gallery.marked_heat(&run.draped, distances, DISTANCE_AT_TOP, &marks, view),
             ])
         };
         let views = args.view.views_or(&[View::FRONT_QUARTER]);
@@ -206,8 +207,10 @@ impl Done<'_> {
         let seams = self.pair.source.seams_in_words();
         let seams = seams.map_or_else(String::new, |words| format!("{words}\n"));
         format!(
-            "{}\n{seams}preset {}, seed {seed}: {usage}\n{written}",
-            run.report, settings.preset
+            "{}{}\n{seams}preset {}, seed {seed}: {usage}\n{written}",
+            run.report,
+            run.explanation.text(),
+            settings.preset
         )
     }
 
@@ -223,6 +226,7 @@ impl Done<'_> {
             "settings": run.settings.config,
             "figures": run.figures().into_iter().collect::<BTreeMap<_, _>>(),
             "report": run.report,
+            "explanation": run.explanation,
             "usage": run.usage,
             "stages": run.stages.iter().copied().collect::<BTreeMap<_, _>>(),
             "warnings": self.warnings,

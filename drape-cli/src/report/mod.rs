@@ -39,7 +39,9 @@ impl Page<'_> {
         body += &cards(run);
         body += &warnings(self.warnings);
         body += &section("Pictures", &self.pictures()?);
+        body += &section("Worst places", &worst_places(run));
         body += &section("Heat maps", &self.heat_maps()?);
+        body += &section("Distances by region", &regions(run));
         body += &section("Figures", &figures(run));
         body += &section("Landmarks", &landmarks(run));
         body += &section("Loss", &curves(run));
@@ -83,7 +85,13 @@ impl Page<'_> {
 
     fn heat_maps(&self) -> anyhow::Result<String> {
         let distance = &self.run.report.vertex_distances;
-        let mut html = self.heat_row("distance to the target", distance, DISTANCE_AT_TOP)?;
+        let marks = self.run.explanation.marks();
+        let pictures = self.views.iter().map(|&view| {
+            let (gallery, draped) = (self.gallery, &self.run.draped);
+            let image = gallery.marked_heat(draped, distance, DISTANCE_AT_TOP, &marks, view);
+            ("distance to the target, worst places marked", image)
+        });
+        let mut html = format!("<div class=\"pictures\">{}</div>\n", figures_of(pictures)?);
         html += &heat_legend("0", &percent_of_side(DISTANCE_AT_TOP));
         html += &self.heat_row(
             "stretch",
@@ -178,6 +186,36 @@ fn warnings(warnings: &[String]) -> String {
             format!("<ul class=\"bad\">{items}</ul>\n")
         },
     )
+}
+
+/// The worst places and what to try, as a list.
+fn worst_places(run: &Run) -> String {
+    let explanation = &run.explanation;
+    let places = explanation.places.iter().map(|p| p.text.clone());
+    let advice = explanation.advice.iter().map(|a| format!("try: {a}"));
+    let items: String = places
+        .chain(advice)
+        .map(|text| format!("<li>{}</li>", escape(&text)))
+        .collect();
+    if items.is_empty() {
+        return items;
+    }
+    format!("<ol>{items}</ol>\n")
+}
+
+/// Percentiles of the distances, a row for each region.
+fn regions(run: &Run) -> String {
+    let mut html = String::from(
+        "<table><tr><th></th><td>mean</td><td>half</td><td>90 %</td><td>99 %</td><td>all</td></tr>",
+    );
+    for r in &run.explanation.regions {
+        let _ = write!(html, "<tr><th>{}</th>", escape(&r.name));
+        for d in [r.mean, r.p50, r.p90, r.p99, r.max] {
+            let _ = write!(html, "<td>{:.3}</td>", 100.0 * d);
+        }
+        html.push_str("</tr>");
+    }
+    html + "</table>\n<p class=\"soft\">Distance of the vertices to the target, in % of its longest side.</p>\n"
 }
 
 fn figures(run: &Run) -> String {
