@@ -8,7 +8,8 @@ use mesh_core::bvh::closest_point_on_triangle;
 use mesh_core::io::{self, MeshFile};
 use mesh_core::{
     Aabb, FaceId, HalfedgeMesh, Landmark, Location, MeshPoint, Point3, PointCloud, PolygonSoup,
-    Positions, SurfelCloud, TargetSurface, TriangleBvh, TriangleSoup, Triangulation, VertexId, Weld,
+    Positions, SurfelCloud, TargetSurface, TriangleBvh, TriangleSoup, Triangulation, VertexId,
+    Weld,
 };
 
 use crate::landmarks;
@@ -53,6 +54,13 @@ impl Source {
     pub(crate) fn vertex_at(&self, row: usize) -> Option<VertexId> {
         let vertex = self.weld.row_of.get(row)?;
         Some(VertexId::new(*vertex as usize))
+    }
+
+    /// The first row of the file that is part of a vertex.
+    pub(crate) fn file_row(&self, v: VertexId) -> usize {
+        let is_part = |&row: &u32| row as usize == v.index();
+        let row = self.weld.row_of.iter().position(is_part);
+        row.unwrap_or(v.index())
     }
 
     /// One position per vertex of the file.

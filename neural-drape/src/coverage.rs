@@ -14,12 +14,14 @@ const NEAR: f64 = 0.04;
 /// at the neck.
 ///
 /// A way to the closest point of the target and from there to the closest point of the mesh comes back near its start
-/// where the shapes cover each other, and far from it where one ends: all places beyond lead to its last.
+/// where the shapes cover each other, and far from it where one ends: all places beyond lead to its last. Where what is
+/// surely beyond makes up less than the share `least` of the area, nothing is marked.
 pub(crate) fn uncovered(
     triangulation: &Triangulation,
     x: &Positions,
     target: &dyn TargetSurface,
     frame: &UnitFrame,
+    least: f64,
 ) -> VertexData<bool> {
     let outside: Vec<Point3> = x.iter().map(|p| frame.from_unit(p)).collect();
     let there: Vec<Point3> = target
@@ -49,6 +51,9 @@ pub(crate) fn uncovered(
         .filter(|&v| !neighbours[v].is_empty() && missed(v, FAR))
         .collect();
     stack.iter().for_each(|&v| is_uncovered[v] = true);
+    if area_share(triangulation, x, &is_uncovered) < least {
+        return VertexData::new(x.len(), false);
+    }
     while let Some(v) = stack.pop() {
         for &w in &neighbours[v] {
             if !is_uncovered[w] && missed(w, NEAR) {
@@ -109,7 +114,7 @@ mod tests {
                 max: Point3::new(1.0, 2.0, 1.0),
             });
             let x = rest.map(|p| frame.to_unit(p));
-            let marked = uncovered(&triangulation, &x, &target, &frame);
+            let marked = uncovered(&triangulation, &x, &target, &frame, 0.0);
             for v in x.ids().filter(|&v| marked[v]) {
                 assert!(rest[v].y < floor, "{}", rest[v]);
             }

@@ -452,11 +452,13 @@ fn lacking(
     if matches!(mode, OverlapMode::Full | OverlapMode::SourcePartial) {
         return nothing;
     }
-    let lacking = uncovered(input.triangulation, initial, input.target, frame);
+    let least = if mode == OverlapMode::Auto {
+        LEAST_BEYOND
+    } else {
+        0.0
+    };
+    let lacking = uncovered(input.triangulation, initial, input.target, frame, least);
     let share = area_share(input.triangulation, initial, &lacking);
-    if mode == OverlapMode::Auto && share < LEAST_BEYOND {
-        return nothing;
-    }
     beyond.of_mesh = beyond.of_mesh.max(share);
     lacking
 }

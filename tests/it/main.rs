@@ -4,6 +4,7 @@ mod bad_input;
 mod commands;
 mod landmarks;
 mod real_pair;
+mod regions;
 mod seams;
 mod suite;
 mod support;

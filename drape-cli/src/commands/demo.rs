@@ -7,10 +7,9 @@ use super::transfer;
 use crate::demo;
 use crate::gallery::ViewArgs;
 use crate::output::say;
-use crate::render::Up;
-use crate::seams::{MorphArgs, Morphing, Seams, WeldArgs};
 use crate::regions::RegionArgs;
 use crate::render::Up;
+use crate::seams::{MorphArgs, Morphing, Seams, WeldArgs};
 use crate::settings::SettingsArgs;
 
 #[derive(Debug, clap::Args)]

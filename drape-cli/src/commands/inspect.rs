@@ -12,6 +12,7 @@ use crate::inspection::Inspection;
 use crate::output::{check_writable, say};
 use crate::regions::hidden::inner_surfaces;
 use crate::render::{color, draw, Axes, Image, Look, Model, Shot, View};
+use crate::seams::Seams;
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
@@ -46,7 +47,7 @@ pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let inspection = Inspection::of(&file).with_context(|| args.file.display().to_string())?;
     let inner = match &args.hidden {
         Some(_) => {
-            let source = Source::of_soup(file.soup().clone())
+            let source = Source::new(file.soup().clone(), Seams::EXACT)
                 .with_context(|| args.file.display().to_string())?;
             Some(proposals(&source))
         }
@@ -113,7 +114,10 @@ fn proposals(source: &Source) -> (String, String) {
         text += &format!("{line}\n");
         list += &format!("# {line}\n");
         for row in part.vertices.chunks(16) {
-            let numbers: Vec<String> = row.iter().map(|v| v.index().to_string()).collect();
+            let numbers: Vec<String> = row
+                .iter()
+                .map(|&v| source.file_row(v).to_string())
+                .collect();
             list += &format!("{}\n", numbers.join(" "));
         }
     }

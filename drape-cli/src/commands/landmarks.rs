@@ -16,6 +16,7 @@ use crate::landmarks::mirror::mirror;
 use crate::landmarks::suggest::suggest;
 use crate::landmarks::text::{write, Form, Places};
 use crate::output::{check_distinct, check_writable, say, warn};
+use crate::seams::Seams;
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
@@ -71,7 +72,12 @@ struct Output {
 
 impl Files {
     fn read(&self) -> anyhow::Result<Pair> {
-        Pair::read(&self.source, &self.target, Some(&self.landmarks))
+        Pair::read(
+            &self.source,
+            &self.target,
+            Some(&self.landmarks),
+            Seams::EXACT,
+        )
     }
 }
 
@@ -133,7 +139,7 @@ fn next(args: &Suggest) -> anyhow::Result<ExitCode> {
             .map(|s| {
                 let target: [f64; 3] = s.target.coords.into();
                 serde_json::json!({
-                    "source": { "vertex": s.vertex.index() },
+                    "source": { "vertex": pair.source.file_row(s.vertex) },
                     "target": { "point": target },
                     "distance_to_landmarks": s.alone.is_finite().then_some(s.alone),
                     "initial_miss": s.missed,
@@ -161,7 +167,7 @@ fn next(args: &Suggest) -> anyhow::Result<ExitCode> {
             text,
             "source vertex {} at ({:.4}, {:.4}, {:.4}): {alone}; the landmarks so far bring it {:.1} % of the \
              target's longest side away from the target, nearest at ({:.4}, {:.4}, {:.4})",
-            s.vertex.index(),
+            pair.source.file_row(s.vertex),
             at.x,
             at.y,
             at.z,
@@ -218,7 +224,7 @@ impl Output {
 
     fn write(&self, pair: &Pair, landmarks: &[Landmark]) -> anyhow::Result<ExitCode> {
         let places = Places {
-            rest: &pair.source.rest,
+            source: &pair.source,
             target: &pair.target.vertices,
         };
         let (text, moved) = write(landmarks, &places, self.form());

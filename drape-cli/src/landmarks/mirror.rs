@@ -205,7 +205,7 @@ mod tests {
         for p in &mut soup.positions {
             *p = Point3::new(p.x * (1.5 + 0.5 * p.y), p.y, p.z * (1.0 + 0.3 * p.x) + 4.0);
         }
-        let source = crate::input::Source::of_soup(soup).unwrap();
+        let source = crate::input::Source::new(soup, crate::seams::Seams::EXACT).unwrap();
         let bvh = TriangleBvh::new(source.triangulation.corners(&source.rest).collect());
         let plane = symmetry_plane(&source.rest, &bvh);
         assert_eq!(plane.normal, Vector3::z());

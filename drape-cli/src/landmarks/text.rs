@@ -11,8 +11,10 @@
 use std::fmt::Write as _;
 
 use anyhow::{bail, ensure, Context as _};
-use mesh_core::{Landmark, LandmarkKind, Point3, Positions};
+use mesh_core::{Landmark, LandmarkKind, Point3};
 use serde_json::{json, Value};
+
+use crate::input::Source;
 
 use super::file::{Entry, SourcePlace, TargetPlace};
 
@@ -82,7 +84,7 @@ fn vertex(word: &str) -> anyhow::Result<usize> {
 
 /// The shapes that landmarks lie on.
 pub(crate) struct Places<'a> {
-    pub(crate) rest: &'a Positions,
+    pub(crate) source: &'a Source,
     /// Vertices of the target's file.
     pub(crate) target: &'a [Point3],
 }
@@ -93,8 +95,9 @@ pub(crate) fn write(landmarks: &[Landmark], places: &Places<'_>, form: Form) -> 
     let mut moved = 0.0f64;
     let mut source_vertex = |l: &Landmark| {
         let v = l.source.main_vertex();
-        moved = moved.max((places.rest[v] - l.source.position(places.rest)).norm());
-        v.index()
+        let rest = &places.source.rest;
+        moved = moved.max((rest[v] - l.source.position(rest)).norm());
+        places.source.file_row(v)
     };
     let text = match form {
         Form::Json => {
@@ -122,7 +125,7 @@ pub(crate) fn write(landmarks: &[Landmark], places: &Places<'_>, form: Form) -> 
             return (text, moved.max(off));
         }
         Form::Points => lines(landmarks, |l| {
-            let from = l.source.position(places.rest);
+            let from = l.source.position(&places.source.rest);
             format!("{} {}", numbers(&from), numbers(&l.target))
         }),
     };
@@ -131,9 +134,9 @@ pub(crate) fn write(landmarks: &[Landmark], places: &Places<'_>, form: Form) -> 
 
 fn json_entry(l: &Landmark, places: &Places<'_>) -> Value {
     let vertex = l.source.main_vertex();
-    let at = l.source.position(places.rest);
-    let source = if at == places.rest[vertex] {
-        json!({ "vertex": vertex.index() })
+    let at = l.source.position(&places.source.rest);
+    let source = if at == places.source.rest[vertex] {
+        json!({ "vertex": places.source.file_row(vertex) })
     } else {
         json!({ "point": [at.x, at.y, at.z] })
     };
@@ -173,6 +176,7 @@ fn nearest(points: &[Point3], p: &Point3) -> (usize, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::seams::Seams;
     use mesh_core::VertexId;
 
     #[test]
@@ -193,12 +197,12 @@ mod tests {
 
     #[test]
     fn every_line_form_comes_back() {
-        let rest: Positions = mesh_core::shapes::tetrahedron().positions.into();
-        let target: Vec<Point3> = rest.iter().map(|p| p * 2.0).collect();
+        let source = Source::new(mesh_core::shapes::tetrahedron(), Seams::EXACT).unwrap();
+        let target: Vec<Point3> = source.rest.iter().map(|p| p * 2.0).collect();
         let mut landmark = Landmark::new(VertexId::new(2), target[2]);
         landmark.name = Some("left ear".to_owned());
         let places = Places {
-            rest: &rest,
+            source: &source,
             target: &target,
         };
         for form in [Form::Text, Form::Ids, Form::Points] {

@@ -11,6 +11,8 @@ use crate::input::{Pair, Source};
 const N_RAYS: usize = 48;
 /// A connected inner surface below this share of the area is a crevice, not a part.
 const LEAST_SHARE: f64 = 2e-3;
+/// Inner linings are carried along by themselves from this share of the area; less may be an armpit.
+const LINING_SHARE: f64 = 0.02;
 /// A separate piece of which at least this share is hidden lies inside another: lids hide most of an eyeball.
 const INNER: f64 = 0.5;
 /// Inner parts of the target that are at least this large beside the source's are its counterparts.
@@ -96,6 +98,7 @@ pub(super) fn add_inner_pieces(pair: &Pair, regions: &mut Regions) -> Vec<String
     let is_named = |v: &VertexId| regions.rigid[*v] || regions.attraction[*v] == 0.0;
     let inner: Vec<Inner> = inner_surfaces(source)
         .into_iter()
+        .filter(|i| i.is_piece || i.share >= LINING_SHARE)
         .filter(|i| !i.vertices.iter().any(is_named))
         .collect();
     if inner.is_empty() {

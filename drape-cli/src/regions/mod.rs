@@ -86,7 +86,7 @@ fn weights(spec: &str, pair: &Pair) -> anyhow::Result<VertexData<f64>> {
         let [vertex, weight] = words[..] else {
             return Err(anyhow!("needs a vertex and a weight")).with_context(place);
         };
-        let v = named::vertex(vertex, n).with_context(place)?;
+        let v = named::vertex(vertex, &pair.source).with_context(place)?;
         weights[v] = weight
             .parse()
             .with_context(|| format!("'{weight}' is no number"))

@@ -7,7 +7,7 @@ use anyhow::{bail, ensure, Context as _};
 use mesh_core::{FaceData, FaceId, VertexData, VertexId};
 
 use super::{hidden, numbered_lines};
-use crate::input::Pair;
+use crate::input::{Pair, Source};
 
 /// What selects the vertices of inner surfaces.
 const HIDDEN: &str = "hidden";
@@ -26,7 +26,7 @@ pub(super) fn find(spec: &str, pair: &Pair) -> anyhow::Result<VertexData<bool>> 
         let mut part = VertexData::new(n, false);
         for (row, words) in numbered_lines(&text) {
             for word in words {
-                part[vertex(word, n).with_context(|| format!("line {row}"))?] = true;
+                part[vertex(word, &pair.source).with_context(|| format!("line {row}"))?] = true;
             }
         }
         part
@@ -77,24 +77,25 @@ fn of_faces(name: &str, pair: &Pair) -> Option<VertexData<bool>> {
     Some(both.map(|(&inside, &outside)| inside && !outside).collect())
 }
 
-/// The values of a PLY vertex property.
+/// The values of a PLY vertex property; of rows that are one vertex the first speaks.
 pub(super) fn property(name: &str, pair: &Pair) -> anyhow::Result<Vec<f64>> {
-    let values = pair.file.vertex_scalars(name);
-    values.with_context(|| {
+    let values = pair.file.vertex_scalars(name).with_context(|| {
         format!("the source has no scalar vertex property '{name}' (PLY files have)")
-    })
+    })?;
+    Ok(pair.source.weld.gather(&values))
 }
 
-/// A vertex by its number.
-pub(super) fn vertex(word: &str, n_vertices: usize) -> anyhow::Result<VertexId> {
+/// A vertex by its row in the file.
+pub(super) fn vertex(word: &str, source: &Source) -> anyhow::Result<VertexId> {
     let row: usize = word
         .parse()
         .with_context(|| format!("'{word}' is no vertex number"))?;
-    ensure!(
-        row < n_vertices,
-        "vertex {row} does not exist: the source has {n_vertices}, counted from 0"
-    );
-    Ok(VertexId::new(row))
+    source.vertex_at(row).with_context(|| {
+        format!(
+            "vertex {row} does not exist: the source has {}, counted from 0",
+            source.n_file_vertices()
+        )
+    })
 }
 
 fn names(pair: &Pair) -> String {
