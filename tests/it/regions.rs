@@ -213,6 +213,8 @@ fn inspect_proposes_the_inner_pieces() {
         seen.stdout
     );
     assert!(seen.stdout.contains("open piece inside"), "{}", seen.stdout);
+    let alone = place.drape("inspect head.obj --hidden").well();
+    assert_eq!(alone.stdout, seen.stdout);
     place.write("head.json", &landmarks());
     io::write_soup(place.path("skin.ply"), &target()).expect("the target is written");
     place

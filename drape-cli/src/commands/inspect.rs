@@ -25,21 +25,23 @@ pub(crate) struct Args {
     #[arg(long, value_name = "PNG")]
     render: Option<PathBuf>,
     /// Propose inner surfaces that no ray from outside reaches, for --free and --rigid; their vertices are written to FILE
-    #[arg(long, value_name = "FILE", num_args = 0..=1, default_missing_value = "")]
+    #[arg(long, value_name = "FILE", num_args = 0..=1, default_missing_value = NO_FILE)]
     hidden: Option<PathBuf>,
     #[command(flatten)]
     view: ViewArgs,
 }
 
+/// The list of inner surfaces is not written.
+const NO_FILE: &str = "-";
 /// Pixels along the side of a picture.
 const PICTURE_SIZE: usize = 560;
 
 pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
-    let folder_of = |path: &&PathBuf| !path.as_os_str().is_empty();
+    let is_file = |path: &&PathBuf| path.as_os_str() != NO_FILE;
     for path in [&args.render, &args.hidden]
         .into_iter()
         .flatten()
-        .filter(folder_of)
+        .filter(is_file)
     {
         check_writable(path)?;
     }
@@ -62,7 +64,7 @@ pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
         if !args.json {
             say(text)?;
         }
-        if !path.as_os_str().is_empty() {
+        if path.as_os_str() != NO_FILE {
             write_atomic(path, list.as_bytes())?;
         }
     }
