@@ -169,9 +169,12 @@ impl<'a> Drape<'a> {
         let sampling = self.config.sampling.at(self.iteration, self.overlap);
         let x = self.parametrization.positions();
         let matches = self.matcher.resample(x, &sampling, &mut self.rng);
-        let matches = self
-            .guidance
-            .weighted(matches, x, self.overlap.mesh_exceeds);
+        let matches = self.guidance.weighted(
+            matches,
+            self.input.triangulation,
+            x,
+            self.overlap.mesh_exceeds,
+        );
 
         let mut terms = self.add_distance_terms(&matches, &weights);
         if self.config.descent == Descent::Alternating {

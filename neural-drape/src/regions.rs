@@ -1,7 +1,7 @@
 //! Parts of the source that are not draped like the rest: free ones, rigid ones, and those the target lacks.
 
 use mesh_core::measure::triangle_normal;
-use mesh_core::{Positions, Triangulation, Vector3, VertexData, VertexId};
+use mesh_core::{Positions, TriangleBvh, Triangulation, Vector3, VertexData, VertexId};
 use mesh_loss::{Matches, SurfaceMatch};
 use mesh_operators::SpaceExtension;
 use nalgebra::Matrix3;
@@ -60,6 +60,11 @@ impl Regions {
     }
 }
 
+/// With a target that is only a part, a sample of the mesh counts if the way to the target and back ends no farther from
+/// it than this share of the way there, and a hundredth of the longest side.
+const MUTUAL: f64 = 0.7;
+const MUTUAL_NEAR: f64 = 0.01;
+
 /// The regions of one drape, ready to be applied. Coordinates are those of the unit frame.
 pub(crate) struct Guidance {
     attraction: VertexData<f64>,
@@ -70,6 +75,8 @@ pub(crate) struct Guidance {
     led: Vec<VertexId>,
     initial: Positions,
     is_trivial: bool,
+    /// The mesh where it was last asked for mutual pairs.
+    bvh: Option<TriangleBvh>,
 }
 
 /// Vertices that move as one, and their shape about its centre, in the size it starts with.
@@ -128,6 +135,7 @@ impl Guidance {
             carried,
             led,
             initial: initial.clone(),
+            bvh: None,
         }
     }
 
@@ -136,15 +144,28 @@ impl Guidance {
         &self.attraction
     }
 
-    /// The pairs that count, by how much; with a target that is only a part, also without those whose normals oppose.
+    /// The pairs that count, by how much; with a target that is only a part, also without the places of the mesh that
+    /// it does not cover.
+    ///
+    /// The back of a leg that was scanned from the front is near the scan. Its normal is opposed, or the closest place to
+    /// its closest point is on the front.
     pub(crate) fn weighted(
-        &self,
+        &mut self,
         mut matches: Matches,
+        triangulation: &Triangulation,
         x: &Positions,
         target_is_part: bool,
     ) -> Matches {
         if target_is_part {
             matches.to_target.retain(|m| !is_opposed(m, x));
+            let corners = || triangulation.corners(x);
+            match &mut self.bvh {
+                Some(bvh) => bvh.refit(corners()),
+                None => self.bvh = Some(TriangleBvh::new(corners().collect())),
+            }
+            if let Some(bvh) = &self.bvh {
+                keep_mutual(&mut matches.to_target, bvh, x);
+            }
         }
         if !self.is_trivial {
             for way in [&mut matches.to_target, &mut matches.to_mesh] {
@@ -186,6 +207,19 @@ impl Guidance {
             moved.iter().zip(x.iter()).map(|(a, b)| a - b).collect(),
         ))
     }
+}
+
+/// Keeps the pairs whose target point has its closest place on the mesh near their own.
+fn keep_mutual(matches: &mut Vec<SurfaceMatch>, bvh: &TriangleBvh, x: &Positions) {
+    let points: Vec<_> = matches.iter().map(|m| m.point).collect();
+    let back = bvh.closest_points(&points);
+    let mut back = back.iter();
+    matches.retain(|m| {
+        let offset = m.offset(x);
+        let start = m.point + offset;
+        back.next()
+            .is_some_and(|b| (b.point - start).norm() <= MUTUAL * offset.norm() + MUTUAL_NEAR)
+    });
 }
 
 /// Whether the mesh and the target turn their backs on each other.
