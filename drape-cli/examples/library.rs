@@ -13,7 +13,9 @@ fn main() -> anyhow::Result<()> {
         anyhow::bail!("give SOURCE TARGET OUT");
     };
     let file = io::read_mesh(source)?;
-    let (mesh, rest) = file.soup().clone().into_halfedge()?;
+    // Vertices that the file splits along seams of texture coordinates or normals move as one.
+    let weld = file.soup().weld(0.0);
+    let (mesh, rest) = weld.soup.clone().into_halfedge()?;
     let target = TriangleSoup::new(io::read_soup(target)?)?;
     let landmarks: Vec<Landmark> = Vec::new();
 
@@ -49,7 +51,7 @@ fn main() -> anyhow::Result<()> {
         },
         &EvaluationConfig::standard(),
     )?;
-    file.write(out, &draped)?;
+    file.write(out, &weld.spread(draped.as_slice()).into())?;
     anyhow::ensure!(
         report.defects.folds == 0,
         "{} edges fold over",

@@ -249,6 +249,12 @@ fn what_cannot_move_is_told_before_the_work() {
         r#"{"componentType": 5126"#,
     );
     assert!(told(implied).contains("implied"));
+    let quantised = JSON.replacen(
+        r#"{"bufferView": 0, "componentType": 5126"#,
+        r#"{"bufferView": 0, "normalized": true, "componentType": 5122"#,
+        1,
+    );
+    assert!(told(quantised).contains("quantised"));
 }
 
 #[test]
@@ -317,8 +323,13 @@ fn it_converts_to_plain_formats() {
     assert_eq!(obj.soup(), read.soup());
     let ply = read.lost_in("a.ply").unwrap();
     assert!(ply.contains("9 texture coordinates"), "{ply}");
-    let obj = read.lost_in("a.obj").unwrap();
-    assert!(!obj.contains("texture coordinates"), "{obj}");
+    let told = read.lost_in("a.obj").unwrap();
+    assert!(!told.contains("texture coordinates"), "{told}");
+    // Floats of the first mesh, whole numbers of the second, each seen from below.
+    let text = String::from_utf8(read.to_bytes("a.obj", &x).unwrap()).unwrap();
+    let uvs: Vec<&str> = text.lines().filter(|l| l.starts_with("vt")).collect();
+    assert_eq!(uvs[..3], ["vt 0 1", "vt 1 1", "vt 1 0"]);
+    assert_eq!(uvs[6..], ["vt 0 1", "vt 1 1", "vt 0 0"]);
 }
 
 #[test]

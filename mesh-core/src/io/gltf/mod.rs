@@ -3,6 +3,7 @@
 
 mod accessor;
 mod container;
+mod gradient;
 mod json_spans;
 mod morphs;
 mod prune;

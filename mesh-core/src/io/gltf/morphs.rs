@@ -8,6 +8,7 @@ use nalgebra::Matrix3;
 
 use super::accessor::{Layout, Layouts};
 use super::container::{Bounds, Container};
+use super::gradient::gradients;
 use super::scene::{Block, Scene};
 use crate::io::contents::unit;
 use crate::io::error::{Fault, Place, ReadProblem};
@@ -90,10 +91,7 @@ pub(super) fn find_uncarriable(
 
 /// Takes every displacement to the new shape, `δ' = J δ`; gives the new bounds of the accessors that changed.
 ///
-/// J is the gradient of the map at the vertex: `Σ |A_f| F_f / Σ |A_f|` over the triangles around its place, all copies
-/// of a vertex that is split along a seam together. `F_f` takes two edges of the triangle at rest and their normal of
-/// length `√(2 |A|)` to those of the moved one, so that it is exact where the map turns, scales or shifts the triangle
-/// (the fourth corner of Sumner and Popović 2004, Eq. 1). A normal's displacement is the difference of the two normals,
+/// J is the gradient of the map around the vertex (see [`gradients`]). A normal's displacement is the difference of the two normals,
 /// morphed and not, each sent through `J⁻ᵀ`; a tangent's likewise through J. Where nothing moved, bytes stay.
 pub(super) fn carry(
     buffers: &mut [Vec<u8>],
@@ -101,7 +99,7 @@ pub(super) fn carry(
     scene: &Scene,
     moved: &[Point3],
 ) -> Result<Vec<Bounds>, Fault> {
-    let maps = maps(scene, moved);
+    let maps = gradients(&scene.soup, moved);
     let mut bounds = Vec::new();
     let mut layouts = Layouts::default();
     for block in &scene.blocks {
@@ -193,131 +191,5 @@ fn carried(
             let [x, y, z, _] = block.tangents.as_ref()?.get::<4>(container, row);
             difference(Vector3::new(x, y, z), map)
         }
-    }
-}
-
-/// The gradient of the map at each vertex, in the frame of the scene; none where nothing around it moved.
-fn maps(scene: &Scene, moved: &[Point3]) -> Vec<Option<Matrix3<f64>>> {
-    let rest = &scene.soup.positions;
-    let place_of = places(moved);
-    let mut sums = vec![(Matrix3::zeros(), 0.0, false); moved.len()];
-    let mut total = (Matrix3::zeros(), 0.0);
-    for corners in &scene.soup.faces {
-        let Some((map, weight)) = face_map(rest, moved, corners) else {
-            continue;
-        };
-        let has_moved = corners
-            .iter()
-            .any(|&v| rest[v as usize] != moved[v as usize]);
-        total = (total.0 + map * weight, total.1 + weight);
-        for &v in corners {
-            let (sum, weights, any) = &mut sums[place_of[v as usize]];
-            *sum += map * weight;
-            *weights += weight;
-            *any |= has_moved;
-        }
-    }
-    let mean = (total.1 > 0.0).then(|| total.0 / total.1);
-    let map_of = |row: usize| match sums[place_of[row]] {
-        // A vertex that no face with an area uses follows the shape as a whole.
-        (_, weights, _) if weights <= 0.0 => mean.filter(|_| rest[row] != moved[row]),
-        (sum, weights, has_moved) => has_moved.then(|| sum / weights),
-    };
-    (0..moved.len()).map(map_of).collect()
-}
-
-/// For each vertex the first of those that are where it is.
-fn places(moved: &[Point3]) -> Vec<usize> {
-    let mut first_at = HashMap::with_capacity(moved.len());
-    let key = |p: &Point3| [p.x, p.y, p.z].map(|c| (c + 0.0).to_bits());
-    moved
-        .iter()
-        .enumerate()
-        .map(|(row, p)| *first_at.entry(key(p)).or_insert(row))
-        .collect()
-}
-
-/// The linear map of a triangle, and its area at rest, doubled.
-fn face_map(rest: &[Point3], moved: &[Point3], corners: &[u32]) -> Option<(Matrix3<f64>, f64)> {
-    let &[a, b, c] = corners else {
-        return None;
-    };
-    let frame = |x: &[Point3]| {
-        let [a, b, c] = [a, b, c].map(|v| x[v as usize]);
-        let area = (b - a).cross(&(c - a));
-        let normal = unit(area)? * area.norm().sqrt();
-        Some((Matrix3::from_columns(&[b - a, c - a, normal]), area.norm()))
-    };
-    let ((from, area), (to, _)) = (frame(rest)?, frame(moved)?);
-    Some((to * from.try_inverse()?, area))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::PolygonSoup;
-    use nalgebra::Rotation3;
-
-    fn scene(soup: PolygonSoup) -> Scene {
-        Scene {
-            blocks: Vec::new(),
-            soup,
-            contents: Default::default(),
-        }
-    }
-
-    #[test]
-    fn a_similarity_is_its_own_gradient_at_every_vertex() {
-        let soup = crate::shapes::icosphere(1);
-        let similar = Rotation3::from_euler_angles(0.3, -1.1, 2.0).into_inner() * 92.0;
-        let moved: Vec<Point3> = soup
-            .positions
-            .iter()
-            .map(|p| Point3::from(similar * p.coords) + Vector3::new(5.0, -1.0, 3.0))
-            .collect();
-        for map in maps(&scene(soup), &moved) {
-            assert!((map.unwrap() - similar).norm() < 1e-10);
-        }
-    }
-
-    #[test]
-    fn where_nothing_moved_there_is_no_map_and_loose_vertices_follow_the_whole() {
-        let mut soup = crate::shapes::open_grid(3, 1);
-        soup.faces = soup
-            .faces
-            .iter()
-            .flat_map(|f| [vec![f[0], f[1], f[2]], vec![f[0], f[2], f[3]]])
-            .collect();
-        soup.positions.push(Point3::new(9.0, 9.0, 9.0));
-        let mut moved = soup.positions.clone();
-        assert!(maps(&scene(soup.clone()), &moved)
-            .iter()
-            .all(Option::is_none));
-        moved[0].x -= 1.0;
-        moved[8].x -= 1.0;
-        let maps = maps(&scene(soup), &moved);
-        assert!(maps[0].is_some() && maps[3].is_none() && maps[8].is_some());
-    }
-
-    #[test]
-    fn copies_of_a_vertex_share_their_map() {
-        let p = |x: f64, y: f64| Point3::new(x, y, 0.0);
-        let soup = PolygonSoup {
-            positions: vec![
-                p(0., 0.),
-                p(1., 0.),
-                p(1., 1.),
-                p(0., 0.),
-                p(1., 1.),
-                p(0., 1.),
-            ],
-            faces: vec![vec![0, 1, 2], vec![3, 4, 5]],
-        };
-        let mut moved = soup.positions.clone();
-        moved[1].z = 1.0;
-        moved[5].z = -2.0;
-        let maps = maps(&scene(soup), &moved);
-        assert_eq!((maps[0], maps[2]), (maps[3], maps[4]));
-        assert_ne!(maps[1], maps[5]);
     }
 }

@@ -186,7 +186,8 @@ fn document(content: &Content, positions: &[Point3], n_bytes: usize, uri: &str) 
         ));
         attributes += ",\"TEXCOORD_0\":2";
     }
-    let mut primitive = format!("\"attributes\":{{{attributes}}}");
+    // Some readers pass over texture coordinates where there is no material.
+    let mut primitive = format!("\"attributes\":{{{attributes}}},\"material\":0");
     if n_indices == 0 {
         primitive += ",\"mode\":0";
     } else {
@@ -212,7 +213,7 @@ fn document(content: &Content, positions: &[Point3], n_bytes: usize, uri: &str) 
         .collect();
     format!(
         "{{\"asset\":{{\"version\":\"2.0\"}},\"scene\":0,\"scenes\":[{{\"nodes\":[0]}}],\"nodes\":[{{\"mesh\":0}}],\
-         \"meshes\":[{{\"primitives\":[{{{primitive}}}]}}],\"accessors\":[{}],\"bufferViews\":[{}],\
+         \"meshes\":[{{\"primitives\":[{{{primitive}}}]}}],\"materials\":[{{\"pbrMetallicRoughness\":{{\"metallicFactor\":0}}}}],\"accessors\":[{}],\"bufferViews\":[{}],\
          \"buffers\":[{{\"byteLength\":{n_bytes}{uri}}}]}}",
         accessors.join(","),
         views.join(",")
