@@ -28,6 +28,7 @@ mod seams;
 mod settings;
 mod similarity;
 mod suite;
+mod toolbox;
 mod usage;
 
 pub use reading::{read_landmarks, read_settings};

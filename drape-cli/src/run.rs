@@ -78,6 +78,27 @@ impl Run {
         })
     }
 
+    /// A result that came about elsewhere, judged.
+    pub(crate) fn of_result(
+        pair: &Pair,
+        settings: Settings,
+        shapes: Shapes,
+        watch: &Stopwatch,
+    ) -> anyhow::Result<Self> {
+        Ok(Self {
+            frame: UnitFrame::of(pair.target.surface.bounds()),
+            report: judge(pair, &shapes.draped, None)?,
+            settings,
+            initial: shapes.initial,
+            draped: shapes.draped,
+            network: None,
+            history: History::default(),
+            left_out: Vec::new(),
+            stages: Vec::new(),
+            usage: watch.read(),
+        })
+    }
+
     /// Distance of each vertex from another place, in longest sides of the target's box.
     pub(crate) fn distances_from(&self, truth: &Positions) -> VertexData<f64> {
         let pairs = self.draped.iter().zip(truth.iter());
@@ -123,6 +144,12 @@ pub(crate) fn judge(
         input,
         &EvaluationConfig::standard(),
     )?)
+}
+
+/// Where a drape started and ended.
+pub(crate) struct Shapes {
+    pub(crate) initial: Positions,
+    pub(crate) draped: Positions,
 }
 
 /// What the optimisation gave.

@@ -65,6 +65,14 @@ pub(crate) struct Settings {
 }
 
 impl SettingsArgs {
+    /// Whether the command line says anything about settings.
+    pub(crate) fn is_given(&self) -> bool {
+        self.preset.is_some()
+            || self.config.is_some()
+            || self.initial.is_some()
+            || self.seed.is_some()
+    }
+
     pub(crate) fn settings(&self) -> anyhow::Result<Settings> {
         let mut settings = match &self.config {
             Some(path) => read(path, self.preset.as_deref())?,
@@ -91,6 +99,11 @@ pub(crate) fn to_toml(settings: &Settings) -> anyhow::Result<String> {
         "preset = {:?}\ninitial = {start}\n{body}",
         settings.preset
     ))
+}
+
+/// The settings of a TOML text.
+pub(crate) fn of_text(text: &str) -> anyhow::Result<Settings> {
+    over_preset(parse(text)?, None)
 }
 
 fn read(path: &Path, preset: Option<&str>) -> anyhow::Result<Settings> {

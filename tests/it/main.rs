@@ -6,6 +6,7 @@ mod landmarks;
 mod real_pair;
 mod regions;
 mod seams;
+mod studio;
 mod suite;
 mod support;
 mod transfer;

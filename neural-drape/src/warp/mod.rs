@@ -153,8 +153,12 @@ impl Warp {
     /// # Errors
     /// The file cannot be written.
     pub fn save(&self, path: impl AsRef<Path>) -> Result<(), WarpError> {
-        let bytes = format::encode(&self.extension, self.network.as_ref(), &self.surface);
-        Ok(mesh_core::io::write_atomic(path, &bytes)?)
+        Ok(mesh_core::io::write_atomic(path, &self.to_bytes())?)
+    }
+
+    /// The bytes of a `.drape` file.
+    pub fn to_bytes(&self) -> Vec<u8> {
+        format::encode(&self.extension, self.network.as_ref(), &self.surface)
     }
 
     /// Reads a warp from a `.drape` file.

@@ -1,0 +1,42 @@
+// Keys, and the page that lists them.
+
+const MOUSE = [
+  ["Click", "mark a place"],
+  ["Drag a marker", "move it along the surface"],
+  ["Drag, or middle button", "turn"],
+  ["Shift drag, or right button", "shift"],
+  ["Wheel, pinch, or Ctrl drag", "nearer, farther"],
+  ["Two fingers on a trackpad", "turn; with Shift: shift"],
+];
+
+const KEYS = [
+  ["Drape", [["D", "drape"], ["Space", "pause, resume"], [".", "one iteration"]]],
+  ["Landmarks", [["Ctrl Z", "undo"], ["Ctrl Shift Z", "redo"], ["Delete", "delete the chosen one"], ["F2", "rename it"], ["R", "soft or rigid"], ["M", "mirror on or off"], ["Esc", "choose none"]]],
+  ["Cameras", [["Home", "frame everything"], ["F", "frame the chosen landmark"], ["1 3 7", "from the front, the side, above"], ["Arrows", "turn"], ["+ −", "nearer, farther"], ["L", "together or each alone"], ["A", "turn the source as the result stands"], ["U", "y or z points up"]]],
+  ["Shown", [["Z", "shaded, edges, points"], ["H", "next heat map"], ["O", "target over result"], ["T", "light or dark"], ["?", "this page"]]],
+];
+
+// Shows the list.
+export const showKeys = (place) => {
+  const table = (caption, rows) => {
+    const keys = (text) => text.split(" ").map((key) => `<kbd>${key}</kbd>`).join(" ");
+    const line = ([key, what]) => `<tr><th scope="row">${caption === "Mouse and trackpad" ? key : keys(key)}</th><td>${what}</td></tr>`;
+    return `<table><caption>${caption}</caption><tbody>${rows.map(line).join("")}</tbody></table>`;
+  };
+  place.innerHTML = table("Mouse and trackpad", MOUSE) + KEYS.map(([caption, rows]) => table(caption, rows)).join("");
+};
+
+// Calls what belongs to a key, unless the user is typing.
+export const listen = (actions) => {
+  document.addEventListener("keydown", (event) => {
+    const { target } = event;
+    const isTyping = target.matches("input[type=text], input[type=number], textarea, select") || document.querySelector("dialog[open]");
+    const name = (event.ctrlKey || event.metaKey ? "ctrl " : "") + (event.shiftKey && event.key.length > 1 ? "shift " : "") + event.key.toLowerCase();
+    const isPressed = target.matches("button, summary, a, input") && [" ", "Enter"].includes(event.key);
+    const isSlid = target.matches("input[type=range], input[type=radio]") && event.key.startsWith("Arrow");
+    const action = actions[event.ctrlKey && event.shiftKey ? `ctrl shift ${event.key.toLowerCase()}` : name];
+    if (!action || isTyping || isPressed || isSlid || event.altKey) return;
+    event.preventDefault();
+    action();
+  });
+};

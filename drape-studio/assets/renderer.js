@@ -1,0 +1,187 @@
+// Draws shapes into parts of one canvas.
+
+const VERTEX = `#version 300 es
+layout(location = 0) in vec3 position;
+layout(location = 1) in vec3 normal;
+layout(location = 2) in float value;
+uniform mat4 view, both;
+uniform float pointSize;
+out vec3 vNormal, vPlace;
+out float vValue;
+void main() {
+  gl_Position = both * vec4(position, 1.0);
+  vPlace = (view * vec4(position, 1.0)).xyz;
+  vNormal = mat3(view) * normal;
+  vValue = value;
+  gl_PointSize = pointSize;
+}`;
+
+const FRAGMENT = `#version 300 es
+precision highp float;
+in vec3 vNormal, vPlace;
+in float vValue;
+uniform vec4 colour;
+uniform vec3 ramp[5];
+uniform vec2 range;
+uniform int mode; // 0 shaded, 1 plain, 2 heat, 3 points
+out vec4 fragment;
+void main() {
+  if (mode == 1) { fragment = colour; return; }
+  if (mode == 3) {
+    vec2 d = gl_PointCoord - 0.5;
+    if (dot(d, d) > 0.25) discard;
+  }
+  vec3 n = vNormal;
+  float l = length(n);
+  n = l > 1e-20 ? n / l : (mode == 3 ? vec3(0, 0, 1) : normalize(cross(dFdx(vPlace), dFdy(vPlace))));
+  bool away = dot(n, -vPlace) < 0.0;
+  if (away) n = -n;
+  vec3 base = colour.rgb;
+  if (mode == 2) {
+    float t = clamp((vValue - range.x) / (range.y - range.x), 0.0, 1.0) * 4.0;
+    int k = min(int(t), 3);
+    base = mix(ramp[k], ramp[k + 1], t - float(k));
+  }
+  if (away && mode == 0 && !gl_FrontFacing) base = mix(base, vec3(0.45, 0.36, 0.34), 0.55);
+  vec3 key = normalize(vec3(0.35, 0.6, 0.8));
+  float light = 0.34 + 0.52 * max(dot(n, key), 0.0) + 0.16 * (0.5 + 0.5 * n.y);
+  vec3 half_ = normalize(key + normalize(-vPlace));
+  float shine = mode == 2 ? 0.0 : 0.10 * pow(max(dot(n, half_), 0.0), 32.0);
+  fragment = vec4(base * light + shine, colour.a);
+}`;
+
+// From good to bad; the legend in style.css has the same.
+const RAMP = [[0.16, 0.25, 0.55], [0.13, 0.55, 0.62], [0.45, 0.74, 0.42], [0.96, 0.80, 0.30], [0.86, 0.24, 0.18]].flat();
+
+const compile = (gl) => {
+  const program = gl.createProgram();
+  for (const [kind, text] of [[gl.VERTEX_SHADER, VERTEX], [gl.FRAGMENT_SHADER, FRAGMENT]]) {
+    const shader = gl.createShader(kind);
+    gl.shaderSource(shader, text);
+    gl.compileShader(shader);
+    if (!gl.getShaderParameter(shader, gl.COMPILE_STATUS)) throw new Error(gl.getShaderInfoLog(shader));
+    gl.attachShader(program, shader);
+  }
+  gl.linkProgram(program);
+  return program;
+};
+
+export class Renderer {
+  constructor(canvas) {
+    this.canvas = canvas;
+    this.gl = canvas.getContext("webgl2", { antialias: true, alpha: false, powerPreference: "high-performance" });
+    if (!this.gl) throw new Error("this browser shows no WebGL 2");
+    this.program = compile(this.gl);
+    const names = ["view", "both", "pointSize", "colour", "ramp", "range", "mode"];
+    this.at = Object.fromEntries(names.map((name) => [name, this.gl.getUniformLocation(this.program, name)]));
+  }
+
+  // Fits the canvas to its place on the page.
+  begin(background) {
+    const { gl, canvas } = this;
+    const ratio = window.devicePixelRatio || 1;
+    const [width, height] = [Math.round(canvas.clientWidth * ratio), Math.round(canvas.clientHeight * ratio)];
+    if (canvas.width !== width || canvas.height !== height) [canvas.width, canvas.height] = [width, height];
+    gl.disable(gl.SCISSOR_TEST);
+    gl.viewport(0, 0, width, height);
+    gl.clearColor(...background, 1);
+    gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
+    gl.enable(gl.DEPTH_TEST);
+    gl.depthFunc(gl.LEQUAL);
+    gl.enable(gl.SCISSOR_TEST);
+    gl.useProgram(this.program);
+    gl.uniform3fv(this.at.ramp, RAMP);
+  }
+
+  // A part of the canvas, in pixels of the page from the canvas's corner.
+  part(box, matrices) {
+    const { gl, canvas } = this;
+    const ratio = canvas.width / Math.max(1, canvas.clientWidth);
+    const rect = [box.left, canvas.clientHeight - box.top - box.height, box.width, box.height].map((x) => Math.round(x * ratio));
+    gl.viewport(...rect);
+    gl.scissor(...rect);
+    gl.uniformMatrix4fv(this.at.view, false, matrices.view);
+    gl.uniformMatrix4fv(this.at.both, false, matrices.both);
+    this.ratio = ratio;
+  }
+
+  attribute(location, buffer, size) {
+    const { gl } = this;
+    if (!buffer) {
+      gl.disableVertexAttribArray(location);
+      gl.vertexAttrib1f(location, 0);
+      return;
+    }
+    gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
+    gl.enableVertexAttribArray(location);
+    gl.vertexAttribPointer(location, size, gl.FLOAT, false, 0, 0);
+  }
+
+  colour([r, g, b], alpha) {
+    this.gl.uniform4f(this.at.colour, r, g, b, alpha);
+  }
+
+  // style: shaded, wire (shaded with edges), points.
+  draw(shape, { style, colour, line, alpha = 1, range = null }) {
+    const { gl, at } = this;
+    if (alpha <= 0) return;
+    const isBlended = alpha < 1;
+    if (isBlended) {
+      gl.enable(gl.BLEND);
+      gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
+    }
+    this.colour(colour, alpha);
+    if (shape.isCloud || style === "points") this.points(shape);
+    else this.surface(shape, isBlended, range);
+    if (style === "wire" && !shape.isCloud) this.lines(shape, line, alpha);
+    gl.disable(gl.BLEND);
+  }
+
+  points(shape) {
+    const { gl, at } = this;
+    this.attribute(0, shape.buffers.positions, 3);
+    this.attribute(1, shape.buffers.normals, 3);
+    this.attribute(2, null);
+    gl.uniform1i(at.mode, 3);
+    gl.uniform1f(at.pointSize, Math.max(2, 3 * this.ratio));
+    gl.drawArrays(gl.POINTS, 0, shape.positions.length / 3);
+  }
+
+  surface(shape, isBlended, range) {
+    const { gl, at } = this;
+    const isHeat = shape.values && range;
+    const isSpread = isHeat && shape.perTriangle;
+    if (isSpread) shape.spread();
+    this.attribute(0, isSpread ? shape.buffers.spread : shape.buffers.positions, 3);
+    this.attribute(1, isSpread ? shape.buffers.spreadNormals : shape.buffers.normals, 3);
+    this.attribute(2, isHeat ? shape.buffers.values : null, 1);
+    if (isHeat) gl.uniform2f(at.range, ...range);
+    gl.uniform1i(at.mode, isHeat ? 2 : 0);
+    gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, shape.buffers.triangles);
+    gl.enable(gl.POLYGON_OFFSET_FILL);
+    gl.polygonOffset(1, 1);
+    const n = shape.triangles.length;
+    const draw = () => (isSpread ? gl.drawArrays(gl.TRIANGLES, 0, n) : gl.drawElements(gl.TRIANGLES, n, gl.UNSIGNED_INT, 0));
+    if (isBlended) {
+      // Only the nearest layer is seen through.
+      gl.colorMask(false, false, false, false);
+      draw();
+      gl.colorMask(true, true, true, true);
+    }
+    draw();
+    gl.disable(gl.POLYGON_OFFSET_FILL);
+  }
+
+  lines(shape, line, alpha) {
+    const { gl, at } = this;
+    gl.enable(gl.BLEND);
+    gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
+    this.attribute(0, shape.buffers.positions, 3);
+    this.attribute(1, null);
+    this.attribute(2, null);
+    this.colour(line, 0.55 * alpha);
+    gl.uniform1i(at.mode, 1);
+    gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, shape.buffers.edges);
+    gl.drawElements(gl.LINES, shape.edges.length, gl.UNSIGNED_INT, 0);
+  }
+}

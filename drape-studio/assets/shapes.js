@@ -1,0 +1,117 @@
+// Shapes on the graphics card.
+
+// Sums of the area vectors of the triangles around each vertex.
+const vertexNormals = (positions, triangles, out) => {
+  out.fill(0);
+  for (let t = 0; t < triangles.length; t += 3) {
+    const [a, b, c] = [3 * triangles[t], 3 * triangles[t + 1], 3 * triangles[t + 2]];
+    const ux = positions[b] - positions[a], uy = positions[b + 1] - positions[a + 1], uz = positions[b + 2] - positions[a + 2];
+    const vx = positions[c] - positions[a], vy = positions[c + 1] - positions[a + 1], vz = positions[c + 2] - positions[a + 2];
+    const x = uy * vz - uz * vy, y = uz * vx - ux * vz, z = ux * vy - uy * vx;
+    out[a] += x; out[a + 1] += y; out[a + 2] += z;
+    out[b] += x; out[b + 1] += y; out[b + 2] += z;
+    out[c] += x; out[c + 1] += y; out[c + 2] += z;
+  }
+  return out;
+};
+
+export class Shape {
+  constructor(gl, { positions, triangles, edges, normals }) {
+    this.gl = gl;
+    this.isCloud = triangles.length === 0;
+    [this.triangles, this.edges] = [triangles, edges];
+    this.values = null;
+    this.perTriangle = false;
+    this.buffers = Object.fromEntries(["positions", "normals", "values", "triangles", "edges", "spread", "spreadNormals"].map((name) => [name, gl.createBuffer()]));
+    this.index("triangles", triangles);
+    this.index("edges", edges);
+    this.givenNormals = normals;
+    this.normals = normals ?? new Float32Array(positions.length);
+    this.move(positions);
+  }
+
+  index(name, rows) {
+    const { gl } = this;
+    gl.bindVertexArray(null);
+    gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, this.buffers[name]);
+    gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, rows, gl.STATIC_DRAW);
+  }
+
+  fill(name, data) {
+    const { gl } = this;
+    gl.bindBuffer(gl.ARRAY_BUFFER, this.buffers[name]);
+    gl.bufferData(gl.ARRAY_BUFFER, data, gl.DYNAMIC_DRAW);
+  }
+
+  // Puts the vertices elsewhere.
+  move(positions) {
+    this.positions = positions;
+    if (!this.givenNormals) vertexNormals(positions, this.triangles, this.normals);
+    this.fill("positions", positions);
+    this.fill("normals", this.normals);
+    this.isSpread = false;
+  }
+
+  // Values to colour by: one per vertex, or one per triangle; none for the plain colour.
+  colour(values, perTriangle) {
+    [this.values, this.perTriangle, this.isSpread] = [values, perTriangle, false];
+    if (values && !perTriangle) this.fill("values", values);
+  }
+
+  // Where every triangle has a colour of its own, it has corners of its own.
+  spread() {
+    if (this.isSpread) return;
+    const n = this.triangles.length;
+    const [p, m, v] = [new Float32Array(3 * n), new Float32Array(3 * n), new Float32Array(n)];
+    for (let k = 0; k < n; k++) {
+      const from = 3 * this.triangles[k];
+      for (let c = 0; c < 3; c++) {
+        p[3 * k + c] = this.positions[from + c];
+        m[3 * k + c] = this.normals[from + c];
+      }
+      v[k] = this.values[Math.floor(k / 3)];
+    }
+    this.fill("spread", p);
+    this.fill("spreadNormals", m);
+    this.fill("values", v);
+    this.isSpread = true;
+  }
+
+  point(v) {
+    return [this.positions[3 * v], this.positions[3 * v + 1], this.positions[3 * v + 2]];
+  }
+
+  // A weighted mean of vertices, and the normal there.
+  place({ vertices, weights }) {
+    const [point, normal] = [[0, 0, 0], [0, 0, 0]];
+    vertices.forEach((v, k) => {
+      for (let c = 0; c < 3; c++) {
+        point[c] += weights[k] * this.positions[3 * v + c];
+        normal[c] += weights[k] * this.normals[3 * v + c];
+      }
+    });
+    return { point, normal };
+  }
+
+  // The middle of the box and the distance of its corners.
+  get bounds() {
+    const [low, high] = [[Infinity, Infinity, Infinity], [-Infinity, -Infinity, -Infinity]];
+    for (let k = 0; k < this.positions.length; k++) {
+      low[k % 3] = Math.min(low[k % 3], this.positions[k]);
+      high[k % 3] = Math.max(high[k % 3], this.positions[k]);
+    }
+    const centre = low.map((x, c) => (x + high[c]) / 2);
+    return { centre, radius: Math.hypot(...low.map((x, c) => (high[c] - x) / 2)) };
+  }
+
+  // Some points, spread over all.
+  sample(n) {
+    const all = this.positions.length / 3;
+    const stride = Math.max(1, Math.floor(all / n));
+    return Array.from({ length: Math.ceil(all / stride) }, (_, k) => this.point(k * stride));
+  }
+
+  free() {
+    Object.values(this.buffers).forEach((buffer) => this.gl.deleteBuffer(buffer));
+  }
+}

@@ -1,0 +1,326 @@
+//! The one place that changes the session: requests and news come in, the newest state goes out.
+
+mod edits;
+mod request;
+mod runs;
+mod state;
+
+pub(crate) use request::{Request, Side};
+
+use std::path::PathBuf;
+use std::sync::mpsc::{channel, Receiver, RecvTimeoutError, Sender};
+use std::sync::Arc;
+use std::thread;
+use std::time::{Duration, Instant};
+
+use mesh_core::{Landmark, Positions, TriangleBvh};
+use serde_json::Value;
+use tokio::sync::oneshot;
+
+use crate::checkpoint;
+use crate::figures::{judge, FiguresJob};
+use crate::hub::{FrameKind, Hub};
+use crate::latest::Latest;
+use crate::preview::{preview, PreviewJob, Shown};
+use crate::runner::{News, Runner};
+use crate::session::{Document, InputRecord, RunLog, Session};
+use crate::{Scene, Settings, Source, Target, Toolbox};
+
+/// Edits are on disk after this long.
+const SAVE_DELAY: Duration = Duration::from_millis(400);
+
+/// What comes to the desk.
+pub(crate) enum Inbox {
+    Request(Request, oneshot::Sender<Result<Value, String>>),
+    Opened(Opened, oneshot::Sender<Result<(), String>>),
+    Snapshot(oneshot::Sender<Snapshot>),
+    /// From the runner of this number.
+    News(u32, News),
+    /// From the preview of this number.
+    Previewed(u32, Result<Vec<String>, String>),
+}
+
+/// A file that was opened.
+pub(crate) enum Opened {
+    Source(Arc<Source>, InputRecord),
+    Target(Arc<Target>, InputRecord),
+    Landmarks(Vec<Landmark>),
+}
+
+/// Everything that an export needs.
+pub(crate) struct Snapshot {
+    pub(crate) session: Session,
+    pub(crate) source: Option<Arc<Source>>,
+    pub(crate) target: Option<Arc<Target>>,
+    /// The shape that is shown.
+    pub(crate) shown: Option<Arc<Positions>>,
+}
+
+/// Where the drape stands.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) enum Status {
+    Starting,
+    Running,
+    Paused,
+    Stopped,
+    Finished,
+    Failed(String),
+}
+
+impl Status {
+    /// Whether the drape shows itself.
+    fn is_busy(&self) -> bool {
+        matches!(self, Self::Running | Self::Starting)
+    }
+}
+
+/// A drape and its thread.
+struct ActiveRun {
+    number: u32,
+    runner: Runner,
+    status: Status,
+    log: RunLog,
+}
+
+/// How to reach the desk.
+#[derive(Clone)]
+pub(crate) struct DeskHandle(Sender<Inbox>);
+
+impl DeskHandle {
+    pub(crate) fn send(&self, message: Inbox) {
+        // The desk lives as long as the server.
+        drop(self.0.send(message));
+    }
+}
+
+/// What a desk is made of.
+pub(crate) struct DeskParts {
+    pub(crate) toolbox: Arc<dyn Toolbox>,
+    pub(crate) hub: Arc<Hub>,
+    pub(crate) session: Session,
+    pub(crate) source: Option<Arc<Source>>,
+    pub(crate) target: Option<Arc<Target>>,
+    pub(crate) session_path: PathBuf,
+    /// What the user should know at first.
+    pub(crate) notice: Option<String>,
+}
+
+pub(crate) struct Desk {
+    toolbox: Arc<dyn Toolbox>,
+    hub: Arc<Hub>,
+    inbox: Sender<Inbox>,
+    session: Session,
+    session_path: PathBuf,
+    source: Option<Arc<Source>>,
+    target: Option<Arc<Target>>,
+    /// The document's settings, read.
+    settings: Settings,
+    run: Option<ActiveRun>,
+    n_runs: u32,
+    preview: Latest<PreviewJob>,
+    n_previews: u32,
+    figures: Arc<Latest<FiguresJob>>,
+    warnings: Vec<String>,
+    preview_error: Option<String>,
+    notice: Option<String>,
+    /// The document before the drag that goes on.
+    dragged_from: Option<Document>,
+    /// The shape shown under this number, to pick on.
+    shown_bvh: Option<(u32, TriangleBvh)>,
+    revision: u64,
+    /// When the session last changed without being saved.
+    unsaved_since: Option<Instant>,
+}
+
+impl Desk {
+    /// Starts the desk's thread.
+    pub(crate) fn start(parts: DeskParts) -> anyhow::Result<DeskHandle> {
+        let (inbox, messages) = channel();
+        let settings = parts.toolbox.settings(&parts.session.document.settings)?;
+        let mut desk = Self {
+            figures: Arc::new(judge(Arc::clone(&parts.hub))),
+            preview: preview(
+                Arc::clone(&parts.toolbox),
+                Arc::clone(&parts.hub),
+                inbox.clone(),
+            ),
+            inbox: inbox.clone(),
+            toolbox: parts.toolbox,
+            hub: parts.hub,
+            session: parts.session,
+            session_path: parts.session_path,
+            source: parts.source,
+            target: parts.target,
+            settings,
+            run: None,
+            n_runs: 0,
+            n_previews: 0,
+            warnings: Vec::new(),
+            preview_error: None,
+            notice: parts.notice,
+            dragged_from: None,
+            shown_bvh: None,
+            revision: 0,
+            unsaved_since: Some(Instant::now()),
+        };
+        desk.hub.set_scene(desk.scene());
+        desk.take_up_run();
+        desk.ask_preview();
+        desk.publish();
+        thread::spawn(move || desk.work(&messages));
+        Ok(DeskHandle(inbox))
+    }
+
+    fn work(&mut self, messages: &Receiver<Inbox>) {
+        loop {
+            let wait = self.unsaved_since.map_or(Duration::from_secs(3600), |at| {
+                SAVE_DELAY.saturating_sub(at.elapsed())
+            });
+            match messages.recv_timeout(wait) {
+                Ok(message) => self.handle(message),
+                Err(RecvTimeoutError::Timeout) => {}
+                Err(RecvTimeoutError::Disconnected) => return,
+            }
+            if self
+                .unsaved_since
+                .is_some_and(|at| at.elapsed() >= SAVE_DELAY)
+            {
+                self.save();
+            }
+        }
+    }
+
+    fn handle(&mut self, message: Inbox) {
+        match message {
+            Inbox::Request(request, reply) => {
+                let answer = self.answer(request).map_err(|e| format!("{e:#}"));
+                // A page that is gone needs no answer.
+                drop(reply.send(answer));
+            }
+            Inbox::Opened(opened, reply) => {
+                let answer = self.open(opened).map_err(|e| format!("{e:#}"));
+                drop(reply.send(answer));
+            }
+            Inbox::Snapshot(reply) => drop(reply.send(self.snapshot())),
+            Inbox::News(number, news) => self.hear(number, news),
+            Inbox::Previewed(number, outcome) if number == self.n_previews => {
+                match outcome {
+                    Ok(warnings) => (self.warnings, self.preview_error) = (warnings, None),
+                    Err(error) => self.preview_error = Some(error),
+                }
+                self.publish();
+            }
+            Inbox::Previewed(..) => {}
+        }
+    }
+
+    fn scene(&self) -> Option<Scene> {
+        Some(Scene {
+            source: Arc::clone(self.source.as_ref()?),
+            target: Arc::clone(self.target.as_ref()?),
+        })
+    }
+
+    /// What the session looks like now goes to every page, and soon to disk.
+    fn changed(&mut self) {
+        self.unsaved_since.get_or_insert_with(Instant::now);
+        self.publish();
+    }
+
+    fn publish(&mut self) {
+        self.revision += 1;
+        let state = self.state().to_string();
+        self.hub.state.send_replace(Arc::from(state));
+    }
+
+    fn save(&mut self) {
+        self.unsaved_since = None;
+        if let Err(error) = self.session.write(&self.session_path) {
+            self.notice = Some(format!("the session cannot be saved: {error:#}"));
+            self.publish();
+        }
+    }
+
+    /// Asks for the shape that the landmarks as they are would give.
+    fn ask_preview(&mut self) {
+        let Some(scene) = self.scene() else {
+            return;
+        };
+        self.n_previews = self.n_previews.wrapping_add(1);
+        let is_pending = self.is_pending();
+        let shown = match &self.run {
+            None => Shown::Initial,
+            Some(run) if run.status.is_busy() || !is_pending => Shown::Nothing,
+            Some(_) => self.hub.draped().map_or(Shown::Nothing, |f| {
+                Shown::Adjusted(Arc::clone(&f.positions))
+            }),
+        };
+        if !is_pending {
+            self.hub.show_drape_again();
+        }
+        self.preview.ask(PreviewJob {
+            number: self.n_previews,
+            scene,
+            settings: self.settings.clone(),
+            landmarks: self.landmarks(),
+            shown,
+            figures: Arc::clone(&self.figures),
+        });
+    }
+
+    fn landmarks(&self) -> Vec<Landmark> {
+        crate::session::landmarks(&self.session.document.marks)
+    }
+
+    fn snapshot(&self) -> Snapshot {
+        let mut session = self.session.clone();
+        let shown = self.hub.draped().filter(|_| self.run.is_some());
+        if let (Some(log), Some(frame)) = (&mut session.run, &shown) {
+            // A drape that goes on is taken as it was when it was last shown.
+            log.iteration = frame.iteration;
+            log.events
+                .retain(|event| event.iteration <= frame.iteration);
+        }
+        let preview = self.hub.frame.borrow().clone();
+        let preview = preview.filter(|frame| frame.kind == FrameKind::Initial);
+        Snapshot {
+            session,
+            source: self.source.clone(),
+            target: self.target.clone(),
+            shown: shown.or(preview).map(|frame| Arc::clone(&frame.positions)),
+        }
+    }
+
+    fn open(&mut self, opened: Opened) -> anyhow::Result<()> {
+        match opened {
+            Opened::Source(source, record) => {
+                self.leave_run();
+                self.session.forget_places();
+                self.source = Some(source);
+                self.session.source = Some(record);
+            }
+            Opened::Target(target, record) => {
+                self.leave_run();
+                self.session.forget_places();
+                self.target = Some(target);
+                self.session.target = Some(record);
+            }
+            Opened::Landmarks(landmarks) => {
+                self.adopt(&landmarks)?;
+                return Ok(());
+            }
+        }
+        self.dragged_from = None;
+        self.shown_bvh = None;
+        self.warnings.clear();
+        self.notice = None;
+        self.hub.set_scene(self.scene());
+        self.ask_preview();
+        self.changed();
+        Ok(())
+    }
+
+    fn checkpoint_path(&self) -> PathBuf {
+        checkpoint::path_beside(&self.session_path)
+    }
+}

@@ -1,0 +1,110 @@
+//! The state as every page gets it.
+
+use serde_json::{json, Value};
+
+use super::{Desk, Status};
+use crate::session::{Mark, MarkKind};
+
+impl Desk {
+    /// Inputs, landmarks, settings, the drape: everything but shapes and figures.
+    pub(super) fn state(&self) -> Value {
+        let document = &self.session.document;
+        let marks: Vec<Value> = document.marks.iter().map(|m| self.mark(m)).collect();
+        json!({
+            "type": "state",
+            "revision": self.revision,
+            "session": self.session_path,
+            "source": self.source_state(),
+            "target": self.target_state(),
+            "landmarks": marks,
+            "warnings": self.warnings,
+            "preview_error": self.preview_error,
+            "notice": self.notice,
+            "mirror": document.mirror,
+            "settings": {
+                "preset": self.settings.preset,
+                "seed": self.settings.config.seed,
+                "n_iterations": self.settings.config.stages.iter().map(|s| s.n_iterations).sum::<usize>(),
+                "toml": self.settings.toml,
+            },
+            "presets": self.toolbox.presets(),
+            "can_undo": self.session.can_undo(),
+            "can_redo": self.session.can_redo(),
+            "run": self.run_state(),
+        })
+    }
+
+    fn source_state(&self) -> Value {
+        let Some(source) = &self.source else {
+            return Value::Null;
+        };
+        json!({
+            "name": file_name(source.file.path()),
+            "n_vertices": source.display.n_vertices,
+            "n_faces": source.display.n_faces,
+            "kind": "mesh",
+            "hash": self.session.source.as_ref().map(|r| &r.fnv1a),
+            "symmetry": source.symmetry,
+        })
+    }
+
+    fn target_state(&self) -> Value {
+        let Some(target) = &self.target else {
+            return Value::Null;
+        };
+        json!({
+            "name": file_name(&target.path),
+            "n_vertices": target.display.n_vertices,
+            "n_faces": target.display.n_faces,
+            "kind": if target.is_cloud() { "cloud" } else { "mesh" },
+            "hash": self.session.target.as_ref().map(|r| &r.fnv1a),
+            "symmetry": target.symmetry,
+        })
+    }
+
+    /// A landmark; its place on the target with the normal there, in the frame of the target.
+    fn mark(&self, mark: &Mark) -> Value {
+        let place = self.target.as_ref().zip(mark.target).map(|(target, point)| {
+            let point = point.into();
+            let location = target.surface().closest_point(&point).location;
+            let normal = target.surface().normal(&location).unwrap_or_default();
+            let unit = target.frame.to_unit(&point);
+            json!({ "point": [unit.x, unit.y, unit.z], "normal": [normal.x, normal.y, normal.z] })
+        });
+        json!({
+            "id": mark.id,
+            "name": mark.name,
+            "source": mark.source,
+            "target": place,
+            "kind": match mark.kind { MarkKind::Soft => "soft", MarkKind::Rigid => "rigid" },
+        })
+    }
+
+    fn run_state(&self) -> Value {
+        let Some(run) = &self.run else {
+            return json!({ "status": "none" });
+        };
+        let (status, error) = match &run.status {
+            Status::Starting => ("starting", None),
+            Status::Running => ("running", None),
+            Status::Paused => ("paused", None),
+            Status::Stopped => ("stopped", None),
+            Status::Finished => ("finished", None),
+            Status::Failed(error) => ("failed", Some(error)),
+        };
+        json!({
+            "status": status,
+            "error": error,
+            "iteration": run.log.iteration,
+            "pending": self.is_pending(),
+            "number": run.number,
+        })
+    }
+}
+
+fn file_name(path: &std::path::Path) -> String {
+    path.file_name()
+        .unwrap_or(path.as_os_str())
+        .to_string_lossy()
+        .into_owned()
+}

@@ -1,0 +1,182 @@
+//! What every open page is shown: the newest of each kind, older ones are passed over.
+
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use axum::body::Bytes;
+use mesh_core::Positions;
+use neural_drape::StepReport;
+use serde_json::{json, Value};
+use tokio::sync::watch;
+
+use crate::display::position_bytes;
+use crate::Scene;
+
+/// Points that a curve is sent with at most.
+const MAX_CURVE: usize = 600;
+
+/// What a shape in the result's view is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum FrameKind {
+    /// The source brought to its landmarks.
+    Initial = 0,
+    /// The drape, as far as it is.
+    Draped = 1,
+    /// How the drape would go on with the landmarks as they are.
+    Adjusted = 2,
+}
+
+/// A shape of the source.
+pub(crate) struct Frame {
+    pub(crate) serial: u32,
+    pub(crate) kind: FrameKind,
+    pub(crate) iteration: usize,
+    pub(crate) positions: Arc<Positions>,
+    /// The message that carries it: four u32 (1, serial, kind, iteration), then f32 positions.
+    pub(crate) message: Bytes,
+}
+
+/// The newest of everything.
+pub(crate) struct Hub {
+    pub(crate) state: watch::Sender<Arc<str>>,
+    pub(crate) progress: watch::Sender<Arc<str>>,
+    pub(crate) figures: watch::Sender<Arc<str>>,
+    pub(crate) frame: watch::Sender<Option<Arc<Frame>>>,
+    shared: Mutex<Shared>,
+}
+
+#[derive(Default)]
+struct Shared {
+    scene: Option<Scene>,
+    serial: u32,
+    draped: Option<Arc<Frame>>,
+    curves: Vec<Curve>,
+}
+
+/// A figure over the iterations.
+struct Curve {
+    name: &'static str,
+    points: Vec<(usize, f64)>,
+}
+
+impl Hub {
+    pub(crate) fn new() -> Self {
+        let empty = || watch::Sender::new(Arc::from(""));
+        Self {
+            state: empty(),
+            progress: empty(),
+            figures: empty(),
+            frame: watch::Sender::new(None),
+            shared: Mutex::new(Shared::default()),
+        }
+    }
+
+    fn shared(&self) -> MutexGuard<'_, Shared> {
+        self.shared.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// What is shown belongs to this scene from now on.
+    pub(crate) fn set_scene(&self, scene: Option<Scene>) {
+        let mut shared = self.shared();
+        shared.scene = scene;
+        shared.curves.clear();
+        shared.draped = None;
+        drop(shared);
+        self.frame.send_replace(None);
+        self.figures.send_replace(Arc::from(""));
+        self.progress.send_replace(Arc::from(""));
+    }
+
+    pub(crate) fn scene(&self) -> Option<Scene> {
+        self.shared().scene.clone()
+    }
+
+    /// Shows a shape. Where there is a drape, an initial shape comes too late and is not shown.
+    pub(crate) fn show(&self, scene: &Scene, kind: FrameKind, iteration: usize, x: Arc<Positions>) {
+        let mut shared = self.shared();
+        if kind == FrameKind::Initial && shared.draped.is_some() {
+            return;
+        }
+        shared.serial = shared.serial.wrapping_add(1);
+        let serial = shared.serial;
+        let mut message = Vec::with_capacity(16 + 12 * x.len());
+        for n in [1, serial, kind as u32, iteration as u32] {
+            message.extend(n.to_le_bytes());
+        }
+        message.extend(position_bytes(&scene.target.frame, &x));
+        let frame = Arc::new(Frame {
+            serial,
+            kind,
+            iteration,
+            positions: x,
+            message: message.into(),
+        });
+        if kind == FrameKind::Draped {
+            shared.draped = Some(Arc::clone(&frame));
+        }
+        self.frame.send_replace(Some(frame));
+    }
+
+    /// The drape as it was last shown.
+    pub(crate) fn draped(&self) -> Option<Arc<Frame>> {
+        self.shared().draped.clone()
+    }
+
+    /// Shows the drape again, after a shape that it might have taken.
+    pub(crate) fn show_drape_again(&self) {
+        let draped = self.draped();
+        let is_other = |shown: &Option<Arc<Frame>>| {
+            shown.as_ref().map(|f| f.serial) != draped.as_ref().map(|f| f.serial)
+        };
+        if draped.is_some() && is_other(&self.frame.borrow()) {
+            self.frame.send_replace(draped);
+        }
+    }
+
+    /// There is no drape any more.
+    pub(crate) fn forget_drape(&self) {
+        let mut shared = self.shared();
+        shared.draped = None;
+        shared.curves.clear();
+        self.progress.send_replace(Arc::from(""));
+    }
+
+    /// Records the terms of a step.
+    pub(crate) fn record_step(&self, step: &StepReport) {
+        let mut shared = self.shared();
+        shared.record("loss", step.iteration, step.total);
+        for term in &step.terms {
+            shared.record(term.name, step.iteration, term.value * term.weight);
+        }
+    }
+
+    /// Records a figure of the judge.
+    pub(crate) fn record(&self, name: &'static str, iteration: usize, value: f64) {
+        self.shared().record(name, iteration, value);
+    }
+
+    /// Every curve, thinned out.
+    pub(crate) fn curves(&self) -> Value {
+        let shared = self.shared();
+        let thin = |curve: &Curve| {
+            let stride = curve.points.len().div_ceil(MAX_CURVE).max(1);
+            let last = curve.points.len().saturating_sub(1);
+            let kept = curve.points.iter().enumerate();
+            let kept = kept.filter(|(k, _)| k % stride == 0 || *k == last);
+            json!({ "name": curve.name, "points": kept.map(|(_, p)| p).collect::<Vec<_>>() })
+        };
+        shared.curves.iter().map(thin).collect()
+    }
+}
+
+impl Shared {
+    fn record(&mut self, name: &'static str, iteration: usize, value: f64) {
+        let known = self.curves.iter_mut().find(|curve| curve.name == name);
+        match known {
+            Some(curve) => curve.points.push((iteration, value)),
+            None => self.curves.push(Curve {
+                name,
+                points: vec![(iteration, value)],
+            }),
+        }
+    }
+}

@@ -1,0 +1,303 @@
+//! The thread that drapes.
+
+use std::path::PathBuf;
+use std::sync::mpsc::{channel, Receiver, Sender, TryRecvError};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use anyhow::Result;
+use neural_drape::{DrapeState, StepReport};
+use serde_json::json;
+
+use crate::checkpoint;
+use crate::course::{Course, Start};
+use crate::figures::FiguresJob;
+use crate::hub::{FrameKind, Hub};
+use crate::latest::Latest;
+use crate::session::{landmarks, Mark, RunLog};
+use crate::{Scene, Toolbox};
+
+/// Shapes are shown at most this often.
+const FRAME_INTERVAL: Duration = Duration::from_millis(33);
+/// A killed server loses this much, and the time that writing takes.
+const SAVE_INTERVAL: Duration = Duration::from_secs(1);
+/// Live figures are asked for at most this often.
+const FIGURES_INTERVAL: Duration = Duration::from_millis(1000);
+
+/// What the thread is told.
+pub(crate) enum Order {
+    Go,
+    Pause,
+    Step,
+    Landmarks(Vec<Mark>),
+}
+
+/// What the thread tells.
+pub(crate) enum News {
+    /// It stands still, ready to go.
+    Paused(RunLog),
+    /// It goes.
+    Running,
+    /// Landmarks changed.
+    Changed(RunLog),
+    /// The last iteration is done.
+    Finished(RunLog),
+    /// It cannot go on.
+    Failed(String),
+}
+
+/// What a drape needs.
+pub(crate) struct RunnerParts {
+    pub(crate) scene: Scene,
+    pub(crate) toolbox: Arc<dyn Toolbox>,
+    pub(crate) hub: Arc<Hub>,
+    pub(crate) figures: Arc<Latest<FiguresJob>>,
+    /// Where it is kept.
+    pub(crate) checkpoint: PathBuf,
+    pub(crate) log: RunLog,
+    /// Where to go on; from the start where there is none.
+    pub(crate) state: Option<DrapeState>,
+}
+
+/// A handle on the thread; when this is dropped, it shows and saves nothing any more, and ends.
+pub(crate) struct Runner {
+    orders: Sender<Order>,
+    is_wanted: Arc<Mutex<bool>>,
+}
+
+impl Drop for Runner {
+    fn drop(&mut self) {
+        *self
+            .is_wanted
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner) = false;
+    }
+}
+
+impl Runner {
+    /// Starts the thread, which begins with a pause; `tell` is called from it.
+    pub(crate) fn start(parts: RunnerParts, tell: impl Fn(News) + Send + 'static) -> Self {
+        let (sender, orders) = channel();
+        let is_wanted = Arc::new(Mutex::new(true));
+        let wanted = Arc::clone(&is_wanted);
+        thread::spawn(move || {
+            if let Err(error) = run(&parts, &wanted, &orders, &tell) {
+                tell(News::Failed(format!("{error:#}")));
+            }
+        });
+        Self {
+            orders: sender,
+            is_wanted,
+        }
+    }
+
+    pub(crate) fn order(&self, order: Order) {
+        // A thread that failed has told so; it takes no more orders.
+        drop(self.orders.send(order));
+    }
+}
+
+fn run(
+    parts: &RunnerParts,
+    is_wanted: &Mutex<bool>,
+    orders: &Receiver<Order>,
+    tell: &dyn Fn(News),
+) -> Result<()> {
+    let start = Start::new(&parts.scene, parts.toolbox.as_ref(), &parts.log)?;
+    let course = match &parts.state {
+        Some(state) => Course::restored(&parts.scene, &start, parts.log.clone(), state)?,
+        None => Course::replayed(&parts.scene, &start, &parts.log, |_| ())?,
+    };
+    let mut run = Run {
+        parts,
+        is_wanted,
+        course,
+        tell,
+        shown: Instant::now(),
+        saved: Instant::now(),
+        judged: Instant::now(),
+        pace: Pace::default(),
+    };
+    run.tell_progress(None);
+    run.show();
+    run.save()?;
+    tell(News::Paused(run.course.log().clone()));
+    run.obey(orders)
+}
+
+struct Run<'a> {
+    parts: &'a RunnerParts,
+    is_wanted: &'a Mutex<bool>,
+    course: Course<'a>,
+    tell: &'a dyn Fn(News),
+    shown: Instant,
+    saved: Instant,
+    judged: Instant,
+    pace: Pace,
+}
+
+impl Run<'_> {
+    /// Follows orders until nobody gives any.
+    fn obey(&mut self, orders: &Receiver<Order>) -> Result<()> {
+        let mut is_running = false;
+        loop {
+            let order = match (is_running, orders.try_recv()) {
+                (_, Ok(order)) => Some(order),
+                (true, Err(TryRecvError::Empty)) => None,
+                (false, Err(TryRecvError::Empty)) => match orders.recv() {
+                    Ok(order) => Some(order),
+                    Err(_) => return Ok(()),
+                },
+                (_, Err(TryRecvError::Disconnected)) => return Ok(()),
+            };
+            match order {
+                None => is_running = self.advance()?,
+                Some(Order::Go) => {
+                    is_running = true;
+                    self.pace = Pace::default();
+                    (self.tell)(News::Running);
+                }
+                Some(Order::Pause) if is_running => {
+                    is_running = false;
+                    self.rest(News::Paused(self.course.log().clone()))?;
+                }
+                Some(Order::Pause) => {}
+                Some(Order::Step) => {
+                    is_running = false;
+                    if self.advance()? {
+                        self.rest(News::Paused(self.course.log().clone()))?;
+                    }
+                }
+                Some(Order::Landmarks(marks)) => self.change(marks)?,
+            }
+        }
+    }
+
+    /// One iteration; false when it was the last.
+    fn advance(&mut self) -> Result<bool> {
+        let began = Instant::now();
+        let step = self.course.step()?;
+        if let Some(step) = &step {
+            self.pace.add(began.elapsed());
+            self.parts.hub.record_step(step);
+        }
+        let is_over = self.course.log().iteration >= self.course.n_iterations();
+        if self.shown.elapsed() >= FRAME_INTERVAL || is_over {
+            self.show();
+            self.tell_progress(step.as_ref());
+        }
+        if self.judged.elapsed() >= FIGURES_INTERVAL {
+            self.judge(false);
+        }
+        if self.saved.elapsed() >= SAVE_INTERVAL {
+            self.save()?;
+        }
+        if is_over {
+            self.rest(News::Finished(self.course.log().clone()))?;
+        }
+        Ok(!is_over)
+    }
+
+    fn change(&mut self, marks: Vec<Mark>) -> Result<()> {
+        self.course.change(marks)?;
+        self.save()?;
+        self.show();
+        self.tell_progress(None);
+        (self.tell)(News::Changed(self.course.log().clone()));
+        Ok(())
+    }
+
+    /// Stands still: everything is shown, judged and saved.
+    fn rest(&mut self, news: News) -> Result<()> {
+        self.show();
+        self.judge(true);
+        self.save()?;
+        (self.tell)(news);
+        Ok(())
+    }
+
+    fn show(&mut self) {
+        let Self { parts, course, .. } = self;
+        let iteration = course.log().iteration;
+        let x = Arc::new(course.positions());
+        let is_wanted = self
+            .is_wanted
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner);
+        if *is_wanted {
+            parts
+                .hub
+                .show(&parts.scene, FrameKind::Draped, iteration, x);
+        }
+        self.shown = Instant::now();
+    }
+
+    fn judge(&mut self, is_resting: bool) {
+        let log = self.course.log();
+        self.parts.figures.ask(FiguresJob {
+            scene: self.parts.scene.clone(),
+            positions: Arc::new(self.course.positions()),
+            landmarks: landmarks(log.last_landmarks()),
+            iteration: Some(log.iteration),
+            is_resting,
+        });
+        self.judged = Instant::now();
+    }
+
+    fn save(&mut self) -> Result<()> {
+        let state = self.course.state();
+        let is_wanted = self
+            .is_wanted
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner);
+        if *is_wanted {
+            checkpoint::write(&self.parts.checkpoint, self.course.log(), &state)?;
+        }
+        self.saved = Instant::now();
+        Ok(())
+    }
+
+    fn tell_progress(&self, step: Option<&StepReport>) {
+        let done = self.course.log().iteration;
+        let n = self.course.n_iterations();
+        let terms = step.iter().flat_map(|step| &step.terms);
+        let terms: Vec<_> = terms.map(|t| json!([t.name, t.value * t.weight])).collect();
+        let message = json!({
+            "type": "progress",
+            "iteration": done,
+            "n_iterations": n,
+            "seconds_left": self.pace.seconds_per_step() * n.saturating_sub(done) as f64,
+            "loss": step.map(|step| step.total),
+            "terms": terms,
+        });
+        let text = Arc::from(message.to_string());
+        let is_wanted = self
+            .is_wanted
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner);
+        if *is_wanted {
+            self.parts.hub.progress.send_replace(text);
+        }
+    }
+}
+
+/// How long a step takes: a running mean.
+#[derive(Default)]
+struct Pace {
+    mean: Option<f64>,
+}
+
+impl Pace {
+    fn add(&mut self, step: Duration) {
+        let seconds = step.as_secs_f64();
+        self.mean = Some(
+            self.mean
+                .map_or(seconds, |mean| 0.95 * mean + 0.05 * seconds),
+        );
+    }
+
+    fn seconds_per_step(&self) -> f64 {
+        self.mean.unwrap_or(0.0)
+    }
+}

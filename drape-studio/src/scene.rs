@@ -1,0 +1,246 @@
+//! Source and target in memory: to drape, to pick on, to show.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use anyhow::{ensure, Context as _};
+use mesh_core::io::{self, MeshFile};
+use mesh_core::{
+    Aabb, HalfedgeMesh, Location, MeshPoint, Point3, PointCloud, PolygonSoup, Positions,
+    TargetSurface, TriangleBvh, TriangleSoup, Triangulation, UnitFrame, Vector3,
+};
+
+use crate::display::Display;
+use crate::pick::{self, Ray};
+
+/// A source and a target.
+#[derive(Clone)]
+pub struct Scene {
+    /// The mesh to deform.
+    pub source: Arc<Source>,
+    /// The shape to drape over.
+    pub target: Arc<Target>,
+}
+
+/// A mesh to deform.
+pub struct Source {
+    /// Its file, to write it back.
+    pub file: MeshFile,
+    /// Its connectivity.
+    pub mesh: HalfedgeMesh,
+    /// Its shape.
+    pub rest: Positions,
+    /// Its polygons as triangles.
+    pub triangulation: Triangulation,
+    pub(crate) frame: UnitFrame,
+    pub(crate) display: Display,
+    pub(crate) symmetry: usize,
+    bvh: TriangleBvh,
+}
+
+/// A shape to drape over.
+pub struct Target {
+    /// Where it was read from.
+    pub path: PathBuf,
+    pub(crate) shape: Shape,
+    pub(crate) frame: UnitFrame,
+    pub(crate) display: Display,
+    pub(crate) symmetry: usize,
+}
+
+/// Triangles or points.
+pub(crate) enum Shape {
+    Soup(TriangleSoup),
+    Cloud(PointCloud),
+}
+
+impl Source {
+    /// Reads a source.
+    ///
+    /// # Errors
+    /// The file cannot be read, or holds no mesh with an area.
+    pub fn read(path: &Path) -> anyhow::Result<Self> {
+        let file = io::read_mesh(path)?;
+        Self::of_file(file).with_context(|| path.display().to_string())
+    }
+
+    fn of_file(file: MeshFile) -> anyhow::Result<Self> {
+        let (mesh, rest) = file.soup().clone().into_halfedge()?;
+        let triangulation = Triangulation::new(&mesh, &rest);
+        ensure!(
+            !triangulation.is_empty(),
+            "no face has three different corners"
+        );
+        let bvh = TriangleBvh::new(triangulation.corners(&rest).collect());
+        let frame = UnitFrame::of(bvh.bounds());
+        let triangles = triangulation
+            .triangles()
+            .iter()
+            .map(|t| t.map(|v| v.index() as u32));
+        let symmetry = symmetry_axis(rest.as_slice(), &bvh.bounds(), |p| {
+            bvh.closest_point(p)
+                .map_or(f64::INFINITY, |c| c.distance_squared)
+        });
+        Ok(Self {
+            display: Display::mesh(&frame, file.soup(), triangles.collect()),
+            symmetry,
+            frame,
+            bvh,
+            mesh,
+            rest,
+            triangulation,
+            file,
+        })
+    }
+
+    /// The first place that a ray in the frame of the display meets, at rest.
+    pub(crate) fn pick(&self, ray: &Ray) -> Option<MeshPoint> {
+        self.place(pick::first_hit(&self.bvh, &self.frame, ray)?)
+    }
+
+    /// The hierarchy of the triangles with the vertices at `x`.
+    pub(crate) fn moved_bvh(&self, x: &Positions) -> TriangleBvh {
+        let mut bvh = self.bvh.clone();
+        bvh.refit(self.triangulation.corners(x));
+        bvh
+    }
+
+    /// The place of the surface at rest closest to `point`.
+    pub(crate) fn closest_place(&self, point: &Point3) -> Option<MeshPoint> {
+        self.place(self.bvh.closest_point(point)?.location)
+    }
+
+    pub(crate) fn place(&self, location: Location) -> Option<MeshPoint> {
+        match location {
+            Location::Triangle { index, barycentric } => Some(MeshPoint::barycentric(
+                self.triangulation.triangles()[index as usize],
+                barycentric,
+            )),
+            Location::Point { .. } => None,
+        }
+    }
+
+    pub(crate) fn bounds(&self) -> Aabb {
+        self.bvh.bounds()
+    }
+}
+
+impl Target {
+    /// Reads a target; a file without faces is a cloud.
+    ///
+    /// # Errors
+    /// The file cannot be read, or holds no surface.
+    pub fn read(path: &Path) -> anyhow::Result<Self> {
+        let file = io::read_mesh(path)?;
+        Self::of_file(file, path).with_context(|| path.display().to_string())
+    }
+
+    fn of_file(file: MeshFile, path: &Path) -> anyhow::Result<Self> {
+        let normals = file.vertex_normals();
+        let soup = file.into_soup();
+        let (shape, display, frame) = if soup.faces.is_empty() {
+            cloud(soup.positions, normals)?
+        } else {
+            triangles(soup)?
+        };
+        let surface = shape.surface();
+        let symmetry = symmetry_axis(&surface.vertices(), &surface.bounds(), |p| {
+            surface.closest_point(p).distance_squared
+        });
+        Ok(Self {
+            path: path.to_owned(),
+            shape,
+            frame,
+            display,
+            symmetry,
+        })
+    }
+
+    /// The surface to drape over.
+    pub fn surface(&self) -> &dyn TargetSurface {
+        self.shape.surface()
+    }
+
+    /// Whether it is a cloud of points.
+    pub fn is_cloud(&self) -> bool {
+        matches!(self.shape, Shape::Cloud(_))
+    }
+
+    /// The first place that a ray in the frame of the display meets.
+    pub(crate) fn pick(&self, ray: &Ray) -> Option<Point3> {
+        match &self.shape {
+            Shape::Soup(soup) => {
+                let location = pick::first_hit(soup.bvh(), &self.frame, ray)?;
+                let Location::Triangle { index, barycentric } = location else {
+                    return None;
+                };
+                let corners = soup.bvh().triangle(index);
+                let sum: Vector3 = (0..3).map(|k| corners[k].coords * barycentric[k]).sum();
+                Some(Point3::from(sum))
+            }
+            Shape::Cloud(cloud) => pick::front_point(&cloud.vertices(), &self.frame, ray),
+        }
+    }
+}
+
+impl Shape {
+    fn surface(&self) -> &dyn TargetSurface {
+        match self {
+            Self::Soup(soup) => soup,
+            Self::Cloud(cloud) => cloud,
+        }
+    }
+}
+
+fn cloud(
+    points: Vec<Point3>,
+    normals: Option<Vec<Vector3>>,
+) -> anyhow::Result<(Shape, Display, UnitFrame)> {
+    let cloud = PointCloud::new(points.clone(), normals)?;
+    let frame = UnitFrame::of(cloud.bounds());
+    let normals: Vec<Vector3> = (0..points.len() as u32)
+        .map(|index| cloud.normal(&Location::Point { index }).unwrap_or_default())
+        .collect();
+    let display = Display::cloud(&frame, &points, &normals);
+    Ok((Shape::Cloud(cloud), display, frame))
+}
+
+fn triangles(soup: PolygonSoup) -> anyhow::Result<(Shape, Display, UnitFrame)> {
+    let shown = soup.clone();
+    let soup = TriangleSoup::new(soup)?;
+    let frame = UnitFrame::of(soup.bounds());
+    let triangles = if shown.faces.iter().all(|f| f.len() == 3) {
+        shown.faces.iter().map(|f| [f[0], f[1], f[2]]).collect()
+    } else {
+        let (mesh, rest) = shown.clone().into_halfedge()?;
+        Triangulation::new(&mesh, &rest)
+            .triangles()
+            .iter()
+            .map(|t| t.map(|v| v.index() as u32))
+            .collect()
+    };
+    let display = Display::mesh(&frame, &shown, triangles);
+    Ok((Shape::Soup(soup), display, frame))
+}
+
+/// Places looked at to find out how symmetric a shape is.
+const N_SYMMETRY_PROBES: usize = 400;
+
+/// The axis across which the middle plane of the box comes nearest to a plane of symmetry.
+fn symmetry_axis(points: &[Point3], bounds: &Aabb, squared: impl Fn(&Point3) -> f64) -> usize {
+    let stride = (points.len() / N_SYMMETRY_PROBES).max(1);
+    let miss = |axis: usize| -> f64 {
+        let probes = points.iter().step_by(stride);
+        probes.map(|p| squared(&mirrored(p, axis, bounds))).sum()
+    };
+    let by_miss = |a: &(usize, f64), b: &(usize, f64)| a.1.total_cmp(&b.1);
+    let best = [0, 1, 2].map(|axis| (axis, miss(axis))).into_iter();
+    best.min_by(by_miss).map_or(0, |(axis, _)| axis)
+}
+
+/// The image of `p` across the middle plane of a box.
+pub(crate) fn mirrored(p: &Point3, axis: usize, bounds: &Aabb) -> Point3 {
+    let mut image = *p;
+    image[axis] = 2.0 * bounds.center()[axis] - p[axis];
+    image
+}

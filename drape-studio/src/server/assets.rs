@@ -1,0 +1,48 @@
+//! The page, embedded in the program.
+
+use axum::extract::Path;
+use axum::http::{header, StatusCode};
+use axum::response::{IntoResponse, Response};
+
+const HTML: &str = "text/html; charset=utf-8";
+const CSS: &str = "text/css; charset=utf-8";
+const SCRIPT: &str = "text/javascript; charset=utf-8";
+const SVG: &str = "image/svg+xml";
+
+/// Name, type and text of every file.
+const FILES: [(&str, &str, &str); 13] = [
+    ("index.html", HTML, include_str!("../../assets/index.html")),
+    ("style.css", CSS, include_str!("../../assets/style.css")),
+    ("icon.svg", SVG, include_str!("../../assets/icon.svg")),
+    ("app.js", SCRIPT, include_str!("../../assets/app.js")),
+    ("link.js", SCRIPT, include_str!("../../assets/link.js")),
+    ("maths.js", SCRIPT, include_str!("../../assets/maths.js")),
+    ("camera.js", SCRIPT, include_str!("../../assets/camera.js")),
+    ("shapes.js", SCRIPT, include_str!("../../assets/shapes.js")),
+    (
+        "renderer.js",
+        SCRIPT,
+        include_str!("../../assets/renderer.js"),
+    ),
+    ("views.js", SCRIPT, include_str!("../../assets/views.js")),
+    ("panels.js", SCRIPT, include_str!("../../assets/panels.js")),
+    ("chart.js", SCRIPT, include_str!("../../assets/chart.js")),
+    ("keys.js", SCRIPT, include_str!("../../assets/keys.js")),
+];
+
+/// The page.
+pub(super) async fn index() -> Response {
+    answer("index.html")
+}
+
+/// A file of the page.
+pub(super) async fn file(Path(name): Path<String>) -> Response {
+    answer(&name)
+}
+
+fn answer(name: &str) -> Response {
+    match FILES.iter().find(|(known, ..)| *known == name) {
+        Some((_, kind, text)) => ([(header::CONTENT_TYPE, *kind)], *text).into_response(),
+        None => StatusCode::NOT_FOUND.into_response(),
+    }
+}

@@ -1,0 +1,96 @@
+//! The server: one router, everything behind the guard.
+
+mod assets;
+mod export;
+mod guard;
+mod open;
+mod socket;
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use axum::extract::{DefaultBodyLimit, Path, State};
+use axum::http::{header, StatusCode};
+use axum::middleware;
+use axum::response::{IntoResponse, Response};
+use axum::routing::{get, post};
+use axum::Router;
+use tokio::net::TcpListener;
+
+use crate::desk::DeskHandle;
+use crate::hub::Hub;
+use crate::Toolbox;
+pub(crate) use guard::Guard;
+
+/// Largest file that a page may send.
+const MAX_UPLOAD: usize = 512 << 20;
+/// Pages connected at once.
+const MAX_SOCKETS: usize = 32;
+
+/// What every handler needs.
+pub(crate) struct App {
+    pub(crate) desk: DeskHandle,
+    pub(crate) hub: Arc<Hub>,
+    pub(crate) toolbox: Arc<dyn Toolbox>,
+    /// Folder of the files that pages send.
+    pub(crate) uploads: PathBuf,
+    pub(crate) sockets: tokio::sync::Semaphore,
+}
+
+impl App {
+    pub(crate) fn new(
+        desk: DeskHandle,
+        hub: Arc<Hub>,
+        toolbox: Arc<dyn Toolbox>,
+        uploads: PathBuf,
+    ) -> Self {
+        Self {
+            desk,
+            hub,
+            toolbox,
+            uploads,
+            sockets: tokio::sync::Semaphore::new(MAX_SOCKETS),
+        }
+    }
+}
+
+/// Serves until the process ends.
+pub(crate) async fn serve(listener: TcpListener, guard: Guard, app: App) -> std::io::Result<()> {
+    let app = Arc::new(app);
+    let studio = Router::new()
+        .route("/{file}", get(assets::file))
+        .route("/mesh/{side}", get(mesh))
+        .route("/open/{role}/{name}", post(open::open))
+        .route("/export/{what}", get(export::export))
+        .route("/ws", get(socket::upgrade))
+        .layer(DefaultBodyLimit::max(MAX_UPLOAD))
+        .with_state(app);
+    let router = Router::new()
+        .route(&format!("/{}/", guard.token()), get(assets::index))
+        .nest(&format!("/{}", guard.token()), studio)
+        .layer(middleware::from_fn_with_state(
+            Arc::new(guard),
+            guard::check,
+        ));
+    axum::serve(listener, router).await
+}
+
+/// The buffers of a shape.
+async fn mesh(State(app): State<Arc<App>>, Path(side): Path<String>) -> Response {
+    let (sender, answer) = tokio::sync::oneshot::channel();
+    app.desk.send(crate::desk::Inbox::Snapshot(sender));
+    let Ok(snapshot) = answer.await else {
+        return StatusCode::SERVICE_UNAVAILABLE.into_response();
+    };
+    let bytes = match side.as_str() {
+        "source" => snapshot.source.map(|s| s.display.bytes.clone()),
+        "target" => snapshot.target.map(|t| t.display.bytes.clone()),
+        _ => None,
+    };
+    match bytes {
+        Some(bytes) => {
+            ([(header::CONTENT_TYPE, "application/octet-stream")], bytes).into_response()
+        }
+        None => StatusCode::NOT_FOUND.into_response(),
+    }
+}

@@ -1,0 +1,205 @@
+//! Session files: JSON, every number exact.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use anyhow::{ensure, Context as _};
+use mesh_core::io::write_atomic;
+use serde::{Deserialize, Serialize};
+
+use super::mark::Mark;
+use super::Session;
+
+pub(super) const VERSION: u32 = 1;
+
+/// An input file and what it held when it was opened.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct InputRecord {
+    pub(crate) path: PathBuf,
+    /// FNV-1a hash of its bytes, hexadecimal.
+    pub(crate) fnv1a: String,
+}
+
+impl InputRecord {
+    /// The record of the file at `path`, as it is now.
+    pub(crate) fn of(path: &Path) -> anyhow::Result<Self> {
+        let bytes =
+            fs::read(path).with_context(|| format!("{}: cannot be read", path.display()))?;
+        Ok(Self {
+            path: path.canonicalize().unwrap_or_else(|_| path.to_owned()),
+            fnv1a: format!("{:016x}", fnv1a(&bytes)),
+        })
+    }
+
+    /// Refuses a file that changed since.
+    pub(crate) fn check(&self) -> anyhow::Result<()> {
+        ensure!(
+            Self::of(&self.path)?.fnv1a == self.fnv1a,
+            "{}: is not the file that the session was recorded with",
+            self.path.display()
+        );
+        Ok(())
+    }
+}
+
+fn fnv1a(bytes: &[u8]) -> u64 {
+    bytes.iter().fold(0xcbf2_9ce4_8422_2325, |hash, &byte| {
+        (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
+    })
+}
+
+/// Reads a session file.
+pub(crate) fn read(path: &Path) -> anyhow::Result<Session> {
+    let text =
+        fs::read_to_string(path).with_context(|| format!("{}: cannot be read", path.display()))?;
+    Session::of_json(&text).with_context(|| path.display().to_string())
+}
+
+impl Session {
+    /// Reads what [`Self::to_json`] wrote; paths that are not there are left to whoever opens them.
+    pub(crate) fn of_json(text: &str) -> anyhow::Result<Self> {
+        let version = serde_json::from_str::<serde_json::Value>(text)
+            .context("is not a session file")?
+            .get("version")
+            .and_then(serde_json::Value::as_u64);
+        ensure!(
+            version == Some(u64::from(VERSION)),
+            "is not a session file of version {VERSION}"
+        );
+        let session: Self = serde_json::from_str(text).context("is not a session file")?;
+        session.check()?;
+        Ok(session)
+    }
+
+    /// Numbers that no studio would have written are refused.
+    fn check(&self) -> anyhow::Result<()> {
+        let documents = self.undo.iter().chain(&self.redo).chain([&self.document]);
+        let runs = self.run.iter().flat_map(|run| {
+            let changed = run.events.iter().filter_map(|event| match &event.change {
+                super::Change::Landmarks(marks) => Some(marks),
+                super::Change::Rebuilt => None,
+            });
+            changed.chain([&run.landmarks])
+        });
+        let mirrors = documents.clone().filter_map(|d| d.mirror).flatten();
+        ensure!(
+            mirrors.into_iter().all(|axis| axis < 3),
+            "names an axis that is none"
+        );
+        for mark in documents.map(|d| &d.marks).chain(runs).flatten() {
+            ensure!(
+                is_finite(mark),
+                "landmark {} is not at a finite place",
+                mark.id
+            );
+        }
+        Ok(())
+    }
+
+    /// The session as a file.
+    pub(crate) fn to_json(&self) -> anyhow::Result<String> {
+        Ok(serde_json::to_string(self)? + "\n")
+    }
+
+    /// Writes the session, all or nothing.
+    pub(crate) fn write(&self, path: &Path) -> anyhow::Result<()> {
+        Ok(write_atomic(path, self.to_json()?.as_bytes())?)
+    }
+
+    /// The largest row of the source that any place names.
+    pub(crate) fn check_places(&self, n_vertices: usize) -> anyhow::Result<()> {
+        let runs = self.run.iter().flat_map(|run| {
+            let changed = run.events.iter().filter_map(|event| match &event.change {
+                super::Change::Landmarks(marks) => Some(marks),
+                super::Change::Rebuilt => None,
+            });
+            changed.chain([&run.landmarks])
+        });
+        let documents = self.undo.iter().chain(&self.redo).chain([&self.document]);
+        let places = documents
+            .map(|d| &d.marks)
+            .chain(runs)
+            .flatten()
+            .filter_map(|m| m.source);
+        for vertex in places.flat_map(|place| place.vertices) {
+            ensure!(
+                (vertex as usize) < n_vertices,
+                "the session names vertex {vertex}, but the source has {n_vertices}"
+            );
+        }
+        Ok(())
+    }
+}
+
+fn is_finite(mark: &Mark) -> bool {
+    let weights = mark.source.iter().flat_map(|s| s.weights);
+    let target = mark.target.iter().flatten().copied();
+    weights.chain(target).all(f64::is_finite)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Event, MarkKind, RunLog, SourcePlace};
+    use super::*;
+
+    fn session() -> Session {
+        let mut session = Session::new("preset = \"standard\"\n".to_owned());
+        let mark = Mark {
+            id: session.fresh_id(),
+            name: "nose".to_owned(),
+            source: Some(SourcePlace {
+                vertices: [1, 2, 3],
+                weights: [0.1 + 0.2, 1.0 / 3.0, 1e-17],
+            }),
+            target: Some([f64::MIN_POSITIVE, -0.0, 1e300]),
+            kind: MarkKind::Rigid,
+        };
+        session.edit(|d| d.marks.push(mark.clone()));
+        session.run = Some(RunLog {
+            settings: session.document.settings.clone(),
+            landmarks: Vec::new(),
+            events: vec![
+                Event {
+                    iteration: 3,
+                    change: super::super::Change::Landmarks(vec![mark]),
+                },
+                Event {
+                    iteration: 4,
+                    change: super::super::Change::Rebuilt,
+                },
+            ],
+            iteration: 5,
+        });
+        session
+    }
+
+    #[test]
+    fn a_session_survives_its_file_to_the_bit() {
+        let before = session();
+        let after = Session::of_json(&before.to_json().unwrap()).unwrap();
+        assert_eq!(after, before);
+        assert_eq!(
+            after.run.unwrap().last_landmarks(),
+            before.document.marks.as_slice()
+        );
+    }
+
+    #[test]
+    fn other_files_are_refused() {
+        let good = session().to_json().unwrap();
+        for bad in [
+            "",
+            "{}",
+            "[1]",
+            &good.replace("\"version\":1", "\"version\":2"),
+            &good.replace("\"marks\"", "\"spots\""),
+            &good.replace("\"mirror\":null", "\"mirror\":[0,3]"),
+            &good[..good.len() / 2],
+        ] {
+            assert!(Session::of_json(bad).is_err(), "{bad}");
+        }
+        assert!(session().check_places(3).is_err());
+        assert!(session().check_places(4).is_ok());
+    }
+}

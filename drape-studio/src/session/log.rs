@@ -1,0 +1,50 @@
+//! What was done to a drape, and when: enough to do it again.
+
+use serde::{Deserialize, Serialize};
+
+use super::mark::Mark;
+
+/// A drape from its start to where it is.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct RunLog {
+    /// The settings that it started with, as TOML.
+    pub(crate) settings: String,
+    /// The landmarks that it started with.
+    pub(crate) landmarks: Vec<Mark>,
+    /// What changed on the way, in order.
+    pub(crate) events: Vec<Event>,
+    /// How many iterations are done.
+    pub(crate) iteration: usize,
+}
+
+/// Something that happened before an iteration.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Event {
+    /// How many iterations were done.
+    pub(crate) iteration: usize,
+    pub(crate) change: Change,
+}
+
+/// What happened.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum Change {
+    /// These landmarks hold from here on.
+    Landmarks(Vec<Mark>),
+    /// The drape was put together again from its saved state.
+    Rebuilt,
+}
+
+impl RunLog {
+    /// The landmarks that hold at the end.
+    pub(crate) fn last_landmarks(&self) -> &[Mark] {
+        let changes = self.events.iter().rev();
+        let last = changes.into_iter().find_map(|event| match &event.change {
+            Change::Landmarks(marks) => Some(marks),
+            Change::Rebuilt => None,
+        });
+        last.unwrap_or(&self.landmarks)
+    }
+}

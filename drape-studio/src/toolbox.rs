@@ -1,0 +1,72 @@
+//! What the studio borrows from the program that starts it, so that both always do the same.
+
+use std::path::Path;
+
+use mesh_core::{Landmark, Positions};
+use neural_drape::DrapeConfig;
+
+use crate::Scene;
+
+/// Settings of a run.
+#[derive(Clone, Debug)]
+pub struct Settings {
+    /// All of them as a TOML file, from which they can be read again.
+    pub toml: String,
+    /// The preset that they come from.
+    pub preset: String,
+    /// Those of the drape itself.
+    pub config: DrapeConfig,
+}
+
+/// A result and what it came from, for a report.
+#[derive(Clone, Copy)]
+pub struct Finished<'a> {
+    /// Source and target.
+    pub scene: &'a Scene,
+    /// The landmarks that led to it.
+    pub landmarks: &'a [Landmark],
+    /// The settings that led to it.
+    pub settings: &'a Settings,
+    /// Where the drape started.
+    pub initial: &'a Positions,
+    /// The result.
+    pub draped: &'a Positions,
+}
+
+/// How the command line reads settings and landmark files, deforms, examines and reports.
+pub trait Toolbox: Send + Sync {
+    /// The names of all presets, the default first.
+    fn presets(&self) -> Vec<String>;
+
+    /// Reads settings; an empty text gives the default preset.
+    ///
+    /// # Errors
+    /// What is wrong with the text, and where.
+    fn settings(&self, toml: &str) -> anyhow::Result<Settings>;
+
+    /// Brings the source to its landmarks, in the way of `settings`.
+    ///
+    /// # Errors
+    /// The landmarks do not fit the source, or no deformation can be found.
+    fn deform(
+        &self,
+        scene: &Scene,
+        landmarks: &[Landmark],
+        settings: &Settings,
+    ) -> anyhow::Result<Positions>;
+
+    /// Everything suspicious about the landmarks, in words.
+    fn examine(&self, scene: &Scene, landmarks: &[Landmark]) -> Vec<String>;
+
+    /// Reads a landmark file.
+    ///
+    /// # Errors
+    /// What is wrong with the file, and where.
+    fn read_landmarks(&self, scene: &Scene, path: &Path) -> anyhow::Result<Vec<Landmark>>;
+
+    /// The report page of a result.
+    ///
+    /// # Errors
+    /// A picture cannot be drawn or a figure not be computed.
+    fn report(&self, finished: Finished<'_>) -> anyhow::Result<String>;
+}

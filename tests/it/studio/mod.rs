@@ -1,0 +1,10 @@
+//! The studio, used in a browser.
+
+mod browser;
+mod page;
+mod pictures;
+mod restart;
+mod safety;
+mod server;
+mod session;
+mod wire;

@@ -1,0 +1,150 @@
+//! A killed studio comes back to where it was, and a page that is loaded again to what it showed.
+
+use std::fs;
+use std::time::Instant;
+
+use serde_json::json;
+
+use super::browser::{browser, Page};
+use super::server::Server;
+use super::wire::Wire;
+use crate::support::Workplace;
+
+/// Long enough to be killed in the middle.
+const LONG: &str = "[[stages]]\nn_iterations = 100000\n";
+
+#[test]
+fn a_killed_studio_loses_at_most_two_seconds() {
+    let place = Workplace::new();
+    place.write("long.toml", LONG);
+    let arguments = [
+        "source.obj",
+        "target.ply",
+        "--landmarks",
+        "landmarks.json",
+        "--config",
+        "long.toml",
+    ];
+    let server = Server::start(&place.path(""), &arguments);
+    let mut wire = Wire::own(&server);
+    wire.ask(json!({ "do": "drape" }));
+    let progress = |wire: &mut Wire| loop {
+        let message = wire.hear().expect("the studio tells how far it is");
+        if message["type"] == "progress" {
+            return message["iteration"].as_u64().expect("a number");
+        }
+    };
+    // How far it was, every moment of the last seconds.
+    let began = Instant::now();
+    let mut seen = Vec::new();
+    while began.elapsed().as_secs_f64() < 4.0 {
+        let iteration = progress(&mut wire);
+        seen.push((Instant::now(), iteration));
+    }
+    server.kill();
+    let killed = Instant::now();
+
+    let server = Server::start(&place.path(""), &["source.obj", "target.ply"]);
+    let mut wire = Wire::own(&server);
+    let state = wire.state(|s| s["run"]["status"] == "paused");
+    let iteration = state["run"]["iteration"].as_u64().expect("a number");
+    let two_seconds_before = seen
+        .iter()
+        .filter(|(at, _)| killed.duration_since(*at).as_secs_f64() >= 2.0)
+        .map(|(_, iteration)| *iteration)
+        .next_back();
+    let least = two_seconds_before.expect("it ran for more than two seconds");
+    assert!(
+        least > 0 && iteration >= least,
+        "back at {iteration}; two seconds before the end it was at {least}"
+    );
+    assert_eq!(state["landmarks"].as_array().map(Vec::len), Some(6));
+
+    // It goes on, and what comes out can still be done again to the bit.
+    wire.ask(json!({ "do": "step" }));
+    let state = wire.state(|s| s["run"]["iteration"] == json!(iteration + 1));
+    assert_eq!(state["run"]["status"], "paused");
+    let exported = download(&server, "result");
+    fs::write(place.path("exported.json"), download(&server, "session")).unwrap();
+    place.drape("replay exported.json -o replayed.obj").well();
+    assert!(place.read("replayed.obj") == exported);
+}
+
+fn download(server: &Server, what: &str) -> String {
+    let request = format!(
+        "GET {}export/{what} HTTP/1.0\r\nHost: {}\r\n\r\n",
+        server.path(),
+        server.host()
+    );
+    let answer = super::wire::raw(server, &request);
+    assert!(answer.starts_with("HTTP/1.0 200"), "{answer:.300}");
+    answer.split_once("\r\n\r\n").expect("a body").1.to_owned()
+}
+
+#[test]
+fn a_page_that_is_loaded_again_comes_back_to_the_running_drape() {
+    let Some(browser) = browser() else { return };
+    let place = Workplace::new();
+    place.write("long.toml", LONG);
+    let arguments = [
+        "source.obj",
+        "target.ply",
+        "--landmarks",
+        "landmarks.json",
+        "--config",
+        "long.toml",
+    ];
+    let server = Server::start(&place.path(""), &arguments);
+    let page = Page::open(&browser, &server.url, [1280, 800]);
+    page.wait("studio.views.result.shape");
+    page.press("#drape");
+    page.wait("studio.frame.iteration > 3");
+    page.go(&server.url);
+    page.wait("studio.frame.iteration > 6 && studio.chart.curves.get('loss').length > 3");
+    assert_eq!(page.value("studio.state.landmarks.length"), json!(6));
+    assert_eq!(page.value("studio.state.run.status"), json!("running"));
+
+    // The connection breaks and comes back by itself.
+    page.value("studio.link.socket.close(), true");
+    page.wait("!document.getElementById('offline').hidden");
+    page.wait("document.getElementById('offline').hidden");
+    let seen = page.value("studio.frame.iteration");
+    page.wait(&format!("studio.frame.iteration > {seen}"));
+}
+
+#[test]
+fn files_are_opened_in_the_page_and_keys_are_listed() {
+    let Some(browser) = browser() else { return };
+    let place = Workplace::new();
+    let server = Server::start(&place.path(""), &[]);
+    let page = Page::open(&browser, &server.url, [1280, 800]);
+    page.wait("studio.state");
+    page.key("?", 191, 0);
+    page.wait("document.getElementById('keys-dialog').open");
+    page.value("document.getElementById('keys-dialog').close(), true");
+
+    for (role, file) in [
+        ("source", "source.obj"),
+        ("target", "target.ply"),
+        ("landmarks", "landmarks.json"),
+    ] {
+        page.press(&format!("#open-{role}"));
+        page.choose_file(&place.path(file));
+        match role {
+            "landmarks" => page.wait("studio.state.landmarks.length === 6"),
+            _ => page.wait(&format!("studio.state.{role}?.name === '{file}'")),
+        }
+    }
+    page.wait("studio.views.result.shape && studio.figures.landmark_rms < 0.01");
+    place.write("broken.obj", "v 0 0 0\nv 1 x 0\n");
+    page.press("#open-source");
+    page.choose_file(&place.path("broken.obj"));
+    page.wait("!document.getElementById('toast').hidden");
+    let said = page.value("document.getElementById('toast').textContent");
+    assert!(
+        said.as_str()
+            .is_some_and(|text| text.contains("roken.obj:2")),
+        "{said}"
+    );
+    assert_eq!(page.value("studio.state.source.name"), json!("source.obj"));
+}
