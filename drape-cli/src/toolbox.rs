@@ -14,6 +14,7 @@ use crate::landmarks::doctor;
 use crate::render::{Up, View};
 use crate::report::Page;
 use crate::run::{Run, Shapes};
+use crate::seams::Seams;
 use crate::settings;
 use crate::usage::Stopwatch;
 
@@ -83,5 +84,6 @@ impl Toolbox for CommandLine {
 
 /// The files of a scene as the other commands read them.
 fn pair(scene: &Scene, landmarks: Option<&Path>) -> anyhow::Result<Pair> {
-    Pair::read(scene.source.file.path(), &scene.target.path, landmarks)
+    let (source, target) = (scene.source.file.path(), &scene.target.path);
+    Pair::read(source, target, landmarks, Seams::EXACT)
 }

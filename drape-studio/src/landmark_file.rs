@@ -27,10 +27,11 @@ pub(crate) fn write(scene: &Scene, marks: &[Mark]) -> Result<String> {
 
 /// A vertex where the place is one, else a face and a weight for each of its corners.
 fn source_place(scene: &Scene, place: &SourcePlace) -> Value {
-    if let Some(corner) = place.weights.iter().position(|&w| w == 1.0) {
-        return json!({ "vertex": place.vertices[corner] });
-    }
     let source = &scene.source;
+    let corner = place.weights.iter().position(|&w| w == 1.0);
+    if let Some(row) = corner.and_then(|corner| source.file_row(place.vertices[corner])) {
+        return json!({ "vertex": row });
+    }
     let triangle = place.mesh_point().vertices;
     let row = source
         .triangulation

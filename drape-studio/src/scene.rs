@@ -7,7 +7,7 @@ use anyhow::{ensure, Context as _};
 use mesh_core::io::{self, MeshFile};
 use mesh_core::{
     Aabb, HalfedgeMesh, Location, MeshPoint, Point3, PointCloud, PolygonSoup, Positions,
-    TargetSurface, TriangleBvh, TriangleSoup, Triangulation, UnitFrame, Vector3,
+    TargetSurface, TriangleBvh, TriangleSoup, Triangulation, UnitFrame, Vector3, Weld,
 };
 
 use crate::display::Display;
@@ -22,7 +22,7 @@ pub struct Scene {
     pub target: Arc<Target>,
 }
 
-/// A mesh to deform.
+/// A mesh to deform. Vertices of its file at one place are one vertex here.
 pub struct Source {
     /// Its file, to write it back.
     pub file: MeshFile,
@@ -35,6 +35,7 @@ pub struct Source {
     pub(crate) frame: UnitFrame,
     pub(crate) display: Display,
     pub(crate) symmetry: usize,
+    weld: Weld,
     bvh: TriangleBvh,
 }
 
@@ -65,7 +66,9 @@ impl Source {
     }
 
     fn of_file(file: MeshFile) -> anyhow::Result<Self> {
-        let (mesh, rest) = file.soup().clone().into_halfedge()?;
+        file.soup().check()?;
+        let weld = file.soup().weld(0.0);
+        let (mesh, rest) = weld.soup.clone().into_halfedge()?;
         let triangulation = Triangulation::new(&mesh, &rest);
         ensure!(
             !triangulation.is_empty(),
@@ -82,8 +85,9 @@ impl Source {
                 .map_or(f64::INFINITY, |c| c.distance_squared)
         });
         Ok(Self {
-            display: Display::mesh(&frame, file.soup(), triangles.collect()),
+            display: Display::mesh(&frame, &weld.soup, triangles.collect()),
             symmetry,
+            weld,
             frame,
             bvh,
             mesh,
@@ -91,6 +95,16 @@ impl Source {
             triangulation,
             file,
         })
+    }
+
+    /// One position per vertex of the file.
+    pub fn spread(&self, positions: &Positions) -> Positions {
+        Positions::from(self.weld.spread(positions.as_slice()))
+    }
+
+    /// The first row of the file that is vertex `v`.
+    pub(crate) fn file_row(&self, v: u32) -> Option<usize> {
+        self.weld.row_of.iter().position(|&row| row == v)
     }
 
     /// The first place that a ray in the frame of the display meets, at rest.

@@ -28,7 +28,8 @@ pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
     drop(progress.map(Progress::finish));
     let (file, target) = (&replayed.scene.source.file, &replayed.scene.target.path);
     check_distinct(&args.output, &[file.path(), target])?;
-    file.write(&args.output, &replayed.draped)?;
+    let positions = replayed.scene.source.spread(&replayed.draped);
+    file.write(&args.output, &positions)?;
     say(&format!("wrote {}\n", args.output.display()))?;
     Ok(ExitCode::SUCCESS)
 }

@@ -132,7 +132,8 @@ impl Work {
     fn result(&self) -> Result<Download> {
         let file = &self.scene.source.file;
         let name = file.path().file_name().unwrap_or_default();
-        let bytes = file.to_bytes(file.path(), self.shown()?)?;
+        let positions = self.scene.source.spread(self.shown()?);
+        let bytes = file.to_bytes(file.path(), &positions)?;
         Ok(Download {
             name: format!("draped-{}", name.to_string_lossy()),
             kind: "application/octet-stream",
