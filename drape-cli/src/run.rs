@@ -85,15 +85,22 @@ impl Run {
         shapes: Shapes,
         watch: &Stopwatch,
     ) -> anyhow::Result<Self> {
+        let report = judge(pair, &shapes.draped, None)?;
+        let counted = Counted {
+            attraction: &VertexData::new(shapes.draped.len(), 1.0),
+            mesh_exceeds: false,
+            target_exceeds: false,
+        };
         Ok(Self {
             frame: UnitFrame::of(pair.target.surface.bounds()),
-            report: judge(pair, &shapes.draped, None)?,
+            explanation: explain(pair, &shapes.draped, &report.vertex_distances, &counted),
+            report,
             settings,
             initial: shapes.initial,
             draped: shapes.draped,
             network: None,
             history: History::default(),
-            left_out: Vec::new(),
+            notes: Vec::new(),
             stages: Vec::new(),
             usage: watch.read(),
         })

@@ -71,6 +71,7 @@ impl SettingsArgs {
             || self.config.is_some()
             || self.initial.is_some()
             || self.seed.is_some()
+            || self.overlap.is_some()
     }
 
     pub(crate) fn settings(&self) -> anyhow::Result<Settings> {
@@ -99,11 +100,6 @@ pub(crate) fn to_toml(settings: &Settings) -> anyhow::Result<String> {
         "preset = {:?}\ninitial = {start}\n{body}",
         settings.preset
     ))
-}
-
-/// The settings of a TOML text.
-pub(crate) fn of_text(text: &str) -> anyhow::Result<Settings> {
-    over_preset(parse(text)?, None)
 }
 
 fn read(path: &Path, preset: Option<&str>) -> anyhow::Result<Settings> {

@@ -1,16 +1,18 @@
 //! What the studio borrows from the command line.
 
 use std::path::Path;
+use std::sync::{Arc, Mutex, PoisonError};
 
-use drape_studio::{Finished, Scene, Settings, Toolbox};
-use mesh_core::{Landmark, Positions};
-use mesh_init::InitInput;
+use anyhow::Context as _;
+use drape_studio::{Deformed, Finished, Scene, Settings, TargetParts, Toolbox};
+use mesh_core::io::MeshFile;
+use mesh_core::Landmark;
 use neural_drape::DrapeConfig;
 
 use crate::gallery::Gallery;
-use crate::initial::deform_input;
-use crate::input::Pair;
-use crate::landmarks::doctor;
+use crate::initial::deform;
+use crate::input::{read_target, Pair, Source, Target};
+use crate::landmarks;
 use crate::render::{Up, View};
 use crate::report::Page;
 use crate::run::{Run, Shapes};
@@ -21,8 +23,71 @@ use crate::usage::Stopwatch;
 /// Pixels along the side of a picture in the report.
 const REPORT_PICTURE: usize = 440;
 
-/// The command line's own ways.
-pub(crate) struct CommandLine;
+/// The command line's own ways. It holds the pair that was worked on last.
+#[derive(Default)]
+pub(crate) struct CommandLine {
+    held: Mutex<Held>,
+}
+
+#[derive(Default)]
+struct Held {
+    source: Option<HeldSource>,
+    target: Option<Target>,
+}
+
+/// The source of a scene as the other commands have it.
+struct HeldSource {
+    of: Arc<drape_studio::Source>,
+    file: MeshFile,
+    source: Source,
+}
+
+impl CommandLine {
+    /// Works on the pair of a scene.
+    fn with_pair<T>(
+        &self,
+        scene: &Scene,
+        landmarks: &[Landmark],
+        work: impl FnOnce(&Pair) -> anyhow::Result<T>,
+    ) -> anyhow::Result<T> {
+        let mut held = self.held.lock().unwrap_or_else(PoisonError::into_inner);
+        let HeldSource { of, file, source } = match held.source.take() {
+            Some(known) if Arc::ptr_eq(&known.of, &scene.source) => known,
+            _ => HeldSource::of(scene)?,
+        };
+        let target = match held.target.take() {
+            Some(known) if Arc::ptr_eq(&known.surface, &scene.target.parts.judged) => known,
+            _ => read_target(&scene.target.path)?,
+        };
+        let pair = Pair {
+            file,
+            source,
+            target,
+            landmarks: landmarks.to_vec(),
+        };
+        let outcome = work(&pair);
+        held.source = Some(HeldSource {
+            of,
+            file: pair.file,
+            source: pair.source,
+        });
+        held.target = Some(pair.target);
+        outcome
+    }
+}
+
+impl HeldSource {
+    fn of(scene: &Scene) -> anyhow::Result<Self> {
+        let file = scene.source.file.clone();
+        let source = Source::new(file.soup().clone(), Seams::EXACT)
+            .with_context(|| file.path().display().to_string())?;
+        Ok(Self {
+            of: Arc::clone(&scene.source),
+            file,
+            source,
+        })
+    }
+}
 
 impl Toolbox for CommandLine {
     fn presets(&self) -> Vec<String> {
@@ -30,7 +95,7 @@ impl Toolbox for CommandLine {
     }
 
     fn settings(&self, toml: &str) -> anyhow::Result<Settings> {
-        let read = settings::of_text(toml)?;
+        let read = settings::from_text(toml)?;
         Ok(Settings {
             toml: settings::to_toml(&read)?,
             preset: read.preset,
@@ -38,52 +103,63 @@ impl Toolbox for CommandLine {
         })
     }
 
+    fn read_target(&self, path: &Path) -> anyhow::Result<TargetParts> {
+        let target = read_target(path)?;
+        let parts = TargetParts {
+            over: Arc::clone(&target.over),
+            judged: Arc::clone(&target.surface),
+        };
+        self.held
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .target = Some(target);
+        Ok(parts)
+    }
+
     fn deform(
         &self,
         scene: &Scene,
         landmarks: &[Landmark],
         settings: &Settings,
-    ) -> anyhow::Result<Positions> {
-        let input = InitInput {
-            mesh: &scene.source.mesh,
-            rest: &scene.source.rest,
-            landmarks,
-            target_bounds: scene.target.surface().bounds(),
-        };
-        deform_input(input, settings::of_text(&settings.toml)?.start)
+    ) -> anyhow::Result<Deformed> {
+        let start = settings::from_text(&settings.toml)?.start;
+        self.with_pair(scene, landmarks, |pair| {
+            let initial = deform(pair, start)?;
+            Ok(Deformed {
+                positions: initial.positions,
+                assumed: initial.assumed,
+            })
+        })
     }
 
     fn examine(&self, scene: &Scene, landmarks: &[Landmark]) -> Vec<String> {
-        doctor::examine_landmarks(landmarks, &scene.source.rest, scene.target.surface())
+        self.with_pair(scene, landmarks, |pair| Ok(pair.warnings()))
+            .unwrap_or_else(|error| vec![format!("{error:#}")])
     }
 
     fn read_landmarks(&self, scene: &Scene, path: &Path) -> anyhow::Result<Vec<Landmark>> {
-        Ok(pair(scene, Some(path))?.landmarks)
+        self.with_pair(scene, &[], |pair| {
+            landmarks::read(path)?.resolve(&pair.source, &pair.target.vertices)
+        })
     }
 
     fn report(&self, finished: Finished<'_>) -> anyhow::Result<String> {
-        let mut pair = pair(finished.scene, None)?;
-        pair.landmarks = finished.landmarks.to_vec();
         let shapes = Shapes {
             initial: finished.initial.clone(),
             draped: finished.draped.clone(),
         };
-        let settings = settings::of_text(&finished.settings.toml)?;
-        let run = Run::of_result(&pair, settings, shapes, &Stopwatch::start())?;
-        let page = Page {
-            title: "A drape made in the studio",
-            run: &run,
-            gallery: &Gallery::new(&pair, &run.initial, Up::Y, REPORT_PICTURE),
-            views: &[View::FRONT_QUARTER, View::BACK_QUARTER],
-            warnings: &doctor::examine(&pair),
-            truth: None,
-        };
-        page.to_html()
+        let settings = settings::from_text(&finished.settings.toml)?;
+        self.with_pair(finished.scene, finished.landmarks, |pair| {
+            let run = Run::of_result(pair, settings, shapes, &Stopwatch::start())?;
+            let page = Page {
+                title: "A drape made in the studio",
+                run: &run,
+                gallery: &Gallery::new(pair, &run.initial, Up::Y, REPORT_PICTURE),
+                views: &[View::FRONT_QUARTER, View::BACK_QUARTER],
+                warnings: &pair.warnings(),
+                truth: None,
+            };
+            page.to_html()
+        })
     }
-}
-
-/// The files of a scene as the other commands read them.
-fn pair(scene: &Scene, landmarks: Option<&Path>) -> anyhow::Result<Pair> {
-    let (source, target) = (scene.source.file.path(), &scene.target.path);
-    Pair::read(source, target, landmarks, Seams::EXACT)
 }

@@ -23,7 +23,7 @@ impl Start {
     pub(crate) fn new(scene: &Scene, toolbox: &dyn Toolbox, log: &RunLog) -> Result<Self> {
         let settings = toolbox.settings(&log.settings)?;
         let landmarks = landmarks(&log.landmarks);
-        let initial = toolbox.deform(scene, &landmarks, &settings)?;
+        let initial = toolbox.deform(scene, &landmarks, &settings)?.positions;
         Ok(Self {
             settings,
             initial,
@@ -174,7 +174,7 @@ pub(crate) fn adjusted(
         mesh: &scene.source.mesh,
         rest: &scene.source.rest,
         landmarks,
-        target_bounds: scene.target.surface().bounds(),
+        target_bounds: scene.target.judged().bounds(),
     };
     Ok(mesh_init::adjust(input, present)?)
 }
@@ -184,7 +184,7 @@ fn fresh<'a>(scene: &'a Scene, start: &'a Start) -> Result<Drape<'a>> {
         triangulation: &scene.source.triangulation,
         rest: &scene.source.rest,
         initial: &start.initial,
-        target: scene.target.surface(),
+        target: scene.target.parts.over.as_ref(),
         landmarks: &start.landmarks,
     };
     Ok(Drape::new(input, start.settings.config.clone())?)

@@ -46,7 +46,7 @@ pub(crate) fn judge(hub: Arc<Hub>) -> Latest<FiguresJob> {
 }
 
 fn tell(hub: &Hub, job: &FiguresJob) {
-    let (source, target) = (&job.scene.source, job.scene.target.surface());
+    let (source, target) = (&job.scene.source, job.scene.target.judged());
     let (triangulation, rest, x) = (&source.triangulation, &source.rest, job.positions.as_ref());
     let config = EvaluationConfig {
         n_samples: N_SAMPLES,
@@ -113,10 +113,7 @@ impl Heat {
         let source = &scene.source;
         let (t, rest) = (&source.triangulation, &source.rest);
         match self {
-            Self::Distance => (
-                vertex_distances(x, scene.target.surface()).into_vec(),
-                false,
-            ),
+            Self::Distance => (vertex_distances(x, scene.target.judged()).into_vec(), false),
             Self::Stretch => {
                 let stretch = face_stretch(&source.mesh, t, rest, x);
                 ((0..t.len()).map(|k| stretch[t.parent(k)]).collect(), true)
@@ -143,7 +140,7 @@ impl Heat {
 fn flipped(scene: &Scene, x: &Positions) -> Vec<f64> {
     let t = &scene.source.triangulation;
     let mut values = vec![0.0; t.len()];
-    let opposed = opposed_triangles(t, x, scene.target.surface()).unwrap_or_default();
+    let opposed = opposed_triangles(t, x, scene.target.judged()).unwrap_or_default();
     let folded = folded_edges(t, &scene.source.rest, x);
     let folded = folded.iter().flat_map(|edge| edge.triangles);
     opposed

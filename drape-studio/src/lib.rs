@@ -31,4 +31,4 @@ mod toolbox;
 pub use replay::{replay, Replayed};
 pub use scene::{Scene, Source, Target};
 pub use studio::{Options, Studio};
-pub use toolbox::{Finished, Settings, Toolbox};
+pub use toolbox::{Deformed, Finished, Settings, TargetParts, Toolbox};

@@ -40,24 +40,31 @@ pub(crate) fn preview(
 ) -> Latest<PreviewJob> {
     Latest::start(move |job: PreviewJob| {
         let outcome = show(&job, toolbox.as_ref(), &hub)
-            .map(|()| toolbox.examine(&job.scene, &job.landmarks))
+            .map(|mut notes| {
+                let warnings = toolbox.examine(&job.scene, &job.landmarks);
+                notes.extend(warnings.iter().map(|text| count_from_one(text)));
+                notes
+            })
             .map_err(|error| format!("{error:#}"));
         // The desk is gone only when the server ends.
         drop(desk.send(Inbox::Previewed(job.number, outcome)));
     })
 }
 
-fn show(job: &PreviewJob, toolbox: &dyn Toolbox, hub: &Hub) -> anyhow::Result<()> {
+/// Shows the shape; what had to be assumed for it.
+fn show(job: &PreviewJob, toolbox: &dyn Toolbox, hub: &Hub) -> anyhow::Result<Vec<String>> {
+    let mut assumed = Vec::new();
     let (kind, x) = match &job.shown {
-        Shown::Nothing => return Ok(()),
+        Shown::Nothing => return Ok(assumed),
         Shown::Adjusted(present) => (
             FrameKind::Adjusted,
             adjusted(&job.scene, &job.landmarks, present)?,
         ),
-        Shown::Initial => (
-            FrameKind::Initial,
-            toolbox.deform(&job.scene, &job.landmarks, &job.settings)?,
-        ),
+        Shown::Initial => {
+            let deformed = toolbox.deform(&job.scene, &job.landmarks, &job.settings)?;
+            assumed = deformed.assumed;
+            (FrameKind::Initial, deformed.positions)
+        }
     };
     let x = Arc::new(x);
     hub.show(&job.scene, kind, 0, Arc::clone(&x));
@@ -68,5 +75,44 @@ fn show(job: &PreviewJob, toolbox: &dyn Toolbox, hub: &Hub) -> anyhow::Result<()
         iteration: None,
         is_resting: true,
     });
-    Ok(())
+    Ok(assumed)
+}
+
+/// The command line counts landmarks from 0, as its files do; the page numbers its markers from 1.
+fn count_from_one(text: &str) -> String {
+    let mut parts = text.split("landmark ");
+    let mut counted = parts.next().unwrap_or_default().to_owned();
+    for part in parts {
+        let n_digits = part.bytes().take_while(u8::is_ascii_digit).count();
+        let (digits, rest) = part.split_at(n_digits);
+        counted += "landmark ";
+        match digits.parse::<usize>() {
+            Ok(n) => counted += &(n + 1).to_string(),
+            Err(_) => counted += digits,
+        }
+        counted += rest;
+    }
+    counted
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_of_landmarks_are_those_of_the_markers() {
+        for (from_zero, from_one) in [
+            (
+                "landmark 0 (nose) and landmark 9 are the same",
+                "landmark 1 (nose) and landmark 10 are the same",
+            ),
+            (
+                "1 landmark: few; 3 landmarks",
+                "1 landmark: few; 3 landmarks",
+            ),
+            ("the landmarks fit", "the landmarks fit"),
+        ] {
+            assert_eq!(count_from_one(from_zero), from_one);
+        }
+    }
 }

@@ -51,7 +51,7 @@ pub fn replay(
     target.check()?;
     let scene = Scene {
         source: Arc::new(Source::read(&source.path)?),
-        target: Arc::new(Target::read(&target.path)?),
+        target: Arc::new(Target::read(&target.path, toolbox)?),
     };
     session
         .check_places(scene.source.rest.len())

@@ -6,12 +6,13 @@ use std::sync::Arc;
 use anyhow::{ensure, Context as _};
 use mesh_core::io::{self, MeshFile};
 use mesh_core::{
-    Aabb, HalfedgeMesh, Location, MeshPoint, Point3, PointCloud, PolygonSoup, Positions,
-    TargetSurface, TriangleBvh, TriangleSoup, Triangulation, UnitFrame, Vector3, Weld,
+    Aabb, HalfedgeMesh, Location, MeshPoint, Point3, PolygonSoup, Positions, TargetSurface,
+    TriangleBvh, Triangulation, UnitFrame, Vector3, Weld,
 };
 
 use crate::display::Display;
 use crate::pick::{self, Ray};
+use crate::{TargetParts, Toolbox};
 
 /// A source and a target.
 #[derive(Clone)]
@@ -43,16 +44,18 @@ pub struct Source {
 pub struct Target {
     /// Where it was read from.
     pub path: PathBuf,
-    pub(crate) shape: Shape,
+    /// What is draped over, and what results are judged by.
+    pub parts: TargetParts,
+    pub(crate) shown: Shown,
     pub(crate) frame: UnitFrame,
     pub(crate) display: Display,
     pub(crate) symmetry: usize,
 }
 
-/// Triangles or points.
-pub(crate) enum Shape {
-    Soup(TriangleSoup),
-    Cloud(PointCloud),
+/// What is seen and picked: all that is in the file.
+pub(crate) enum Shown {
+    Triangles(TriangleBvh),
+    Points(Vec<Point3>),
 }
 
 impl Source {
@@ -144,97 +147,90 @@ impl Target {
     ///
     /// # Errors
     /// The file cannot be read, or holds no surface.
-    pub fn read(path: &Path) -> anyhow::Result<Self> {
+    pub fn read(path: &Path, toolbox: &dyn Toolbox) -> anyhow::Result<Self> {
         let file = io::read_mesh(path)?;
-        Self::of_file(file, path).with_context(|| path.display().to_string())
+        let parts = toolbox.read_target(path)?;
+        Self::of_file(file, parts, path).with_context(|| path.display().to_string())
     }
 
-    fn of_file(file: MeshFile, path: &Path) -> anyhow::Result<Self> {
-        let normals = file.vertex_normals();
+    fn of_file(file: MeshFile, parts: TargetParts, path: &Path) -> anyhow::Result<Self> {
+        let judged = parts.judged.as_ref();
+        let frame = UnitFrame::of(judged.bounds());
         let soup = file.into_soup();
-        let (shape, display, frame) = if soup.faces.is_empty() {
-            cloud(soup.positions, normals)?
+        let (shown, display) = if soup.faces.is_empty() {
+            cloud(soup.positions, judged, &frame)
         } else {
-            triangles(soup)?
+            triangles(soup, &frame)?
         };
-        let surface = shape.surface();
-        let symmetry = symmetry_axis(&surface.vertices(), &surface.bounds(), |p| {
-            surface.closest_point(p).distance_squared
+        let symmetry = symmetry_axis(&judged.vertices(), &judged.bounds(), |p| {
+            judged.closest_point(p).distance_squared
         });
         Ok(Self {
             path: path.to_owned(),
-            shape,
+            parts,
+            shown,
             frame,
             display,
             symmetry,
         })
     }
 
-    /// The surface to drape over.
-    pub fn surface(&self) -> &dyn TargetSurface {
-        self.shape.surface()
+    /// The surface that results are judged by.
+    pub fn judged(&self) -> &dyn TargetSurface {
+        self.parts.judged.as_ref()
     }
 
     /// Whether it is a cloud of points.
     pub fn is_cloud(&self) -> bool {
-        matches!(self.shape, Shape::Cloud(_))
+        matches!(self.shown, Shown::Points(_))
     }
 
     /// The first place that a ray in the frame of the display meets.
     pub(crate) fn pick(&self, ray: &Ray) -> Option<Point3> {
-        match &self.shape {
-            Shape::Soup(soup) => {
-                let location = pick::first_hit(soup.bvh(), &self.frame, ray)?;
+        match &self.shown {
+            Shown::Triangles(bvh) => {
+                let location = pick::first_hit(bvh, &self.frame, ray)?;
                 let Location::Triangle { index, barycentric } = location else {
                     return None;
                 };
-                let corners = soup.bvh().triangle(index);
+                let corners = bvh.triangle(index);
                 let sum: Vector3 = (0..3).map(|k| corners[k].coords * barycentric[k]).sum();
                 Some(Point3::from(sum))
             }
-            Shape::Cloud(cloud) => pick::front_point(&cloud.vertices(), &self.frame, ray),
+            Shown::Points(points) => pick::front_point(points, &self.frame, ray),
         }
     }
 }
 
-impl Shape {
-    fn surface(&self) -> &dyn TargetSurface {
-        match self {
-            Self::Soup(soup) => soup,
-            Self::Cloud(cloud) => cloud,
-        }
-    }
-}
-
-fn cloud(
-    points: Vec<Point3>,
-    normals: Option<Vec<Vector3>>,
-) -> anyhow::Result<(Shape, Display, UnitFrame)> {
-    let cloud = PointCloud::new(points.clone(), normals)?;
-    let frame = UnitFrame::of(cloud.bounds());
-    let normals: Vec<Vector3> = (0..points.len() as u32)
-        .map(|index| cloud.normal(&Location::Point { index }).unwrap_or_default())
+fn cloud(points: Vec<Point3>, judged: &dyn TargetSurface, frame: &UnitFrame) -> (Shown, Display) {
+    let closest = judged.closest_points(&points);
+    let normals: Vec<Vector3> = closest
+        .iter()
+        .map(|c| judged.normal(&c.location).unwrap_or_default())
         .collect();
-    let display = Display::cloud(&frame, &points, &normals);
-    Ok((Shape::Cloud(cloud), display, frame))
+    let display = Display::cloud(frame, &points, &normals);
+    (Shown::Points(points), display)
 }
 
-fn triangles(soup: PolygonSoup) -> anyhow::Result<(Shape, Display, UnitFrame)> {
-    let shown = soup.clone();
-    let soup = TriangleSoup::new(soup)?;
-    let frame = UnitFrame::of(soup.bounds());
-    let triangles = if shown.faces.iter().all(|f| f.len() == 3) {
-        shown.faces.iter().map(|f| [f[0], f[1], f[2]]).collect()
+fn triangles(soup: PolygonSoup, frame: &UnitFrame) -> anyhow::Result<(Shown, Display)> {
+    let triangles: Vec<[u32; 3]> = if soup.faces.iter().all(|f| f.len() == 3) {
+        soup.faces.iter().map(|f| [f[0], f[1], f[2]]).collect()
     } else {
-        let (mesh, rest) = shown.clone().into_halfedge()?;
+        let (mesh, rest) = soup.clone().into_halfedge()?;
         Triangulation::new(&mesh, &rest)
             .triangles()
             .iter()
             .map(|t| t.map(|v| v.index() as u32))
             .collect()
     };
-    let display = Display::mesh(&frame, &shown, triangles);
-    Ok((Shape::Soup(soup), display, frame))
+    let corners = triangles
+        .iter()
+        .map(|t| t.map(|v| soup.positions[v as usize]));
+    let bvh = TriangleBvh::new(corners.collect());
+    Ok((
+        Shown::Triangles(bvh),
+        Display::mesh(frame, &soup, triangles),
+    ))
 }
 
 /// Places looked at to find out how symmetric a shape is.

@@ -53,7 +53,7 @@ impl Studio {
     /// A file cannot be read or does not belong to the session, or the port is taken.
     pub fn open(options: &Options, toolbox: Arc<dyn Toolbox>) -> Result<Self> {
         let (mut session, mut notice) = kept_session(options, toolbox.as_ref())?;
-        let inputs = open_inputs(options, &mut session, &mut notice)?;
+        let inputs = open_inputs(options, &mut session, &mut notice, toolbox.as_ref())?;
         if let Some(settings) = &options.settings {
             let settings = toolbox.settings(settings)?.toml;
             session.edit(|d| d.settings = settings);
@@ -141,6 +141,7 @@ fn open_inputs(
     options: &Options,
     session: &mut Session,
     notice: &mut Option<String>,
+    toolbox: &dyn Toolbox,
 ) -> Result<Inputs> {
     let asked = [&options.source, &options.target];
     let mut records = [session.source.clone(), session.target.clone()];
@@ -169,7 +170,9 @@ fn open_inputs(
         None => None,
     };
     let target = match &target_record {
-        Some(record) => read_or_forget(record, options.target.is_some(), notice, Target::read)?,
+        Some(record) => read_or_forget(record, options.target.is_some(), notice, |path| {
+            Target::read(path, toolbox)
+        })?,
         None => None,
     };
     (session.source, session.target) = (

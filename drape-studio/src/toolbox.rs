@@ -1,8 +1,9 @@
 //! What the studio borrows from the program that starts it, so that both always do the same.
 
 use std::path::Path;
+use std::sync::Arc;
 
-use mesh_core::{Landmark, Positions};
+use mesh_core::{Landmark, Positions, TargetSurface};
 use neural_drape::DrapeConfig;
 
 use crate::Scene;
@@ -16,6 +17,22 @@ pub struct Settings {
     pub preset: String,
     /// Those of the drape itself.
     pub config: DrapeConfig,
+}
+
+/// A target as the command line takes it.
+pub struct TargetParts {
+    /// What is draped over.
+    pub over: Arc<dyn TargetSurface>,
+    /// What results are judged by.
+    pub judged: Arc<dyn TargetSurface>,
+}
+
+/// The source brought to its landmarks.
+pub struct Deformed {
+    /// In the target's coordinates.
+    pub positions: Positions,
+    /// What had to be assumed, in words.
+    pub assumed: Vec<String>,
 }
 
 /// A result and what it came from, for a report.
@@ -44,6 +61,12 @@ pub trait Toolbox: Send + Sync {
     /// What is wrong with the text, and where.
     fn settings(&self, toml: &str) -> anyhow::Result<Settings>;
 
+    /// Reads a target.
+    ///
+    /// # Errors
+    /// The file cannot be read, or holds no surface.
+    fn read_target(&self, path: &Path) -> anyhow::Result<TargetParts>;
+
     /// Brings the source to its landmarks, in the way of `settings`.
     ///
     /// # Errors
@@ -53,9 +76,9 @@ pub trait Toolbox: Send + Sync {
         scene: &Scene,
         landmarks: &[Landmark],
         settings: &Settings,
-    ) -> anyhow::Result<Positions>;
+    ) -> anyhow::Result<Deformed>;
 
-    /// Everything suspicious about the landmarks, in words.
+    /// Everything suspicious about the inputs and landmarks, in words.
     fn examine(&self, scene: &Scene, landmarks: &[Landmark]) -> Vec<String>;
 
     /// Reads a landmark file.

@@ -20,7 +20,7 @@ pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
     check_mesh(&args.output)?;
     check_distinct(&args.output, &[&args.session])?;
     let mut progress = None;
-    let replayed = drape_studio::replay(&args.session, &CommandLine, |step| {
+    let replayed = drape_studio::replay(&args.session, &CommandLine::default(), |step| {
         progress
             .get_or_insert_with(|| Progress::start(step.n_iterations))
             .show(step);

@@ -56,7 +56,7 @@ pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
         is_fresh: args.fresh,
         port: args.port,
     };
-    let studio = Studio::open(&options, Arc::new(CommandLine))?;
+    let studio = Studio::open(&options, Arc::new(CommandLine::default()))?;
     say(&format!(
         "studio at {}\nsession kept in {}\nCtrl-C ends it; the same command comes back to it\n",
         studio.url(),

@@ -36,20 +36,11 @@ const ENOUGH_TO_GUIDE: usize = 5;
 
 /// Everything suspicious about the landmarks of a pair, in words.
 pub(crate) fn examine(pair: &Pair) -> Vec<String> {
-    examine_landmarks(
+    let case = Case::new(
         &pair.landmarks,
         &pair.source.rest,
         pair.target.surface.as_ref(),
-    )
-}
-
-/// Everything suspicious about landmarks of a source over a target, in words.
-pub(crate) fn examine_landmarks(
-    landmarks: &[Landmark],
-    rest: &Positions,
-    target: &dyn TargetSurface,
-) -> Vec<String> {
-    let case = Case::new(landmarks, rest, target);
+    );
     let mut warnings: Vec<String> = case.too_few().into_iter().collect();
     warnings.extend(case.off_surface());
     warnings.extend(case.duplicates());

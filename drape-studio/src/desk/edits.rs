@@ -195,7 +195,7 @@ impl Desk {
     fn twin(&self, mark: &Mark, [of_source, of_target]: [usize; 2], id: u32) -> Option<Mark> {
         let scene = self.scene()?;
         let landmark = mark.landmark()?;
-        let (source, target) = (&scene.source, scene.target.surface());
+        let (source, target) = (&scene.source, scene.target.judged());
 
         let place = landmark.source.position(&source.rest);
         let image = mirrored(&place, of_source, &source.bounds());

@@ -66,8 +66,8 @@ impl Desk {
     fn mark(&self, mark: &Mark) -> Value {
         let place = self.target.as_ref().zip(mark.target).map(|(target, point)| {
             let point = point.into();
-            let location = target.surface().closest_point(&point).location;
-            let normal = target.surface().normal(&location).unwrap_or_default();
+            let location = target.judged().closest_point(&point).location;
+            let normal = target.judged().normal(&location).unwrap_or_default();
             let unit = target.frame.to_unit(&point);
             json!({ "point": [unit.x, unit.y, unit.z], "normal": [normal.x, normal.y, normal.z] })
         });

@@ -61,7 +61,7 @@ fn read(app: &App, role: &str, name: &str, bytes: &[u8]) -> Result<Opened> {
             Ok(Opened::Source(Arc::new(source), InputRecord::of(&path)?))
         }
         "target" => {
-            let target = Target::read(&path).map_err(show)?;
+            let target = Target::read(&path, app.toolbox.as_ref()).map_err(show)?;
             Ok(Opened::Target(Arc::new(target), InputRecord::of(&path)?))
         }
         "landmarks" => {
