@@ -4,7 +4,7 @@ use std::io::{self, Write as _};
 use std::path::Path;
 
 use anyhow::bail;
-use mesh_core::io::Format;
+use mesh_core::io::{Format, MeshFile};
 
 /// Prints text; a reader that has had enough (`| head`) is no error.
 pub(crate) fn say(text: &str) -> io::Result<()> {
@@ -69,10 +69,53 @@ pub(crate) fn check_distinct(path: &Path, inputs: &[&Path]) -> anyhow::Result<()
     }
 }
 
+/// That an output in another folder names files that stay beside the source (materials, pictures), in words.
+pub(crate) fn left_beside(file: &MeshFile, output: &Path) -> Option<String> {
+    let folder_of = |path: &Path| {
+        let folder = path.parent().filter(|p| !p.as_os_str().is_empty());
+        folder.unwrap_or(Path::new(".")).canonicalize().ok()
+    };
+    let (from, to) = (folder_of(file.path())?, folder_of(output)?);
+    let is_left = |name: &&String| from.join(name).is_file() && !to.join(name).exists();
+    let names: Vec<&str> = file
+        .contents()
+        .references
+        .iter()
+        .filter(is_left)
+        .map(String::as_str)
+        .collect();
+    let is_written = file.keeps_format(output) && !names.is_empty();
+    is_written.then(|| {
+        format!(
+            "{} names files that stay in {}: copy {} beside it",
+            output.display(),
+            from.display(),
+            names.join(", ")
+        )
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use std::fs;
+
+    #[test]
+    fn files_that_stay_beside_the_source_are_named() {
+        let folder = tempfile::tempdir().unwrap();
+        let (source, other) = (folder.path().join("in"), folder.path().join("out"));
+        fs::create_dir(&source).unwrap();
+        fs::create_dir(&other).unwrap();
+        fs::write(source.join("skin.mtl"), b"newmtl a").unwrap();
+        let text = "mtllib skin.mtl\nmtllib missing.mtl\nv 0 0 0\nf 1 1 1\n";
+        let file = MeshFile::from_bytes(source.join("a.obj"), text.into()).unwrap();
+        let told = left_beside(&file, &other.join("b.obj")).unwrap();
+        assert!(told.contains("copy skin.mtl beside it"), "{told}");
+        assert_eq!(left_beside(&file, &source.join("b.obj")), None);
+        assert_eq!(left_beside(&file, &other.join("b.ply")), None);
+        fs::write(other.join("skin.mtl"), b"").unwrap();
+        assert_eq!(left_beside(&file, &other.join("b.obj")), None);
+    }
 
     #[test]
     fn bad_places_are_named() {

@@ -41,10 +41,12 @@ def load(path):
     """One geometry of all that is in the file, vertices in their order, in the coordinates of the scene."""
     try:
         scene = trimesh.load(path, process=False, maintain_order=True)
-    except ValueError:
-        if path.suffix != ".ply":
-            raise
-        return load_mixed_ply(path)
+    except (ValueError, TypeError):
+        if path.suffix == ".ply":
+            return load_mixed_ply(path)
+        if path.suffix == ".off":
+            return load_mixed_off(path)
+        raise
     if not isinstance(scene, trimesh.Scene):
         return scene
     parts = [part for part in scene.dump() if len(part.vertices)]
@@ -56,6 +58,16 @@ def load_mixed_ply(path):
     data = plyfile.PlyData.read(path)
     vertices = np.stack([data["vertex"][axis] for axis in "xyz"], axis=1)
     polygons = data["face"]["vertex_indices"]
+    fans = [(p[0], p[k], p[k + 1]) for p in polygons for k in range(1, len(p) - 1)]
+    return trimesh.Trimesh(vertices, fans, process=False)
+
+
+def load_mixed_off(path):
+    """trimesh stumbles over polygons of five or more corners in an OFF file."""
+    lines = [line.split() for line in path.read_text().splitlines() if line.strip() and not line.startswith("#")]
+    n_vertices, n_faces = int(lines[1][0]), int(lines[1][1])
+    vertices = np.array(lines[2:2 + n_vertices], dtype=float)[:, :3]
+    polygons = [[int(word) for word in line[1:1 + int(line[0])]] for line in lines[2 + n_vertices:][:n_faces]]
     fans = [(p[0], p[k], p[k + 1]) for p in polygons for k in range(1, len(p) - 1)]
     return trimesh.Trimesh(vertices, fans, process=False)
 

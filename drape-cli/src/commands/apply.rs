@@ -7,7 +7,7 @@ use mesh_core::io;
 use mesh_core::Positions;
 use neural_drape::Warp;
 
-use crate::output::{check_distinct, check_mesh, say, warn};
+use crate::output::{check_distinct, check_mesh, left_beside, say, warn};
 use crate::seams::MorphArgs;
 
 #[derive(Debug, clap::Args)]
@@ -30,10 +30,12 @@ pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let mut file = io::read_mesh(&args.mesh)?;
     file.set_morphs(args.morphs.morphs.into());
     file.check_writable(&args.output)?;
-    let left_behind = args.morphs.left_behind(&file, &args.output);
-    warn(&Vec::from_iter(
-        left_behind.into_iter().chain(file.lost_in(&args.output)),
-    ));
+    let notes = [
+        args.morphs.left_behind(&file, &args.output),
+        file.lost_in(&args.output),
+        left_beside(&file, &args.output),
+    ];
+    warn(&notes.into_iter().flatten().collect::<Vec<_>>());
     let moved = Positions::from(warp.apply(&file.soup().positions));
     file.write(&args.output, &moved)?;
     say(&format!(

@@ -6,7 +6,7 @@ use std::process::ExitCode;
 use crate::gallery::{Gallery, ViewArgs};
 use crate::initial::{deform, Start};
 use crate::input::{read_positions, Pair};
-use crate::output::{check_distinct, check_mesh, check_writable, say, warn};
+use crate::output::{check_distinct, check_mesh, check_writable, left_beside, say, warn};
 use crate::render::{Image, View};
 use crate::run::judge;
 use crate::seams::{MorphArgs, WeldArgs};
@@ -66,6 +66,7 @@ pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let mut warnings = pair.warnings();
     warnings.extend(args.morphs.left_behind(&pair.file, &args.output));
     warnings.extend(pair.file.lost_in(&args.output));
+    warnings.extend(left_beside(&pair.file, &args.output));
     let initial = deform(&pair, args.initial)?;
     warnings.extend(initial.assumed);
     warn(&warnings);

@@ -9,7 +9,7 @@ use mesh_core::Positions;
 
 use crate::gallery::{Gallery, ViewArgs, DISTANCE_AT_TOP};
 use crate::input::{read_positions, Pair};
-use crate::output::{check_distinct, check_mesh, check_writable, say, warn};
+use crate::output::{check_distinct, check_mesh, check_writable, left_beside, say, warn};
 use crate::regions::RegionArgs;
 use crate::render::{Image, View};
 use crate::report::Page;
@@ -85,6 +85,7 @@ pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let chosen = args.regions.resolve(&pair)?;
     warnings.extend(chosen.notes);
     warnings.extend(pair.file.lost_in(&args.output));
+    warnings.extend(left_beside(&pair.file, &args.output));
     warn(&warnings);
     let run = Run::new(&pair, settings, &chosen.regions, truth.as_ref(), &watch)?;
     warn(&run.notes);

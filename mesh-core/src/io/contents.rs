@@ -33,7 +33,7 @@ pub struct Contents {
     pub materials: Vec<NamedFaces>,
     /// How many different smoothing groups there are, "off" not counted.
     pub n_smoothing_groups: usize,
-    /// The material libraries and other files that this one names; none of them is opened.
+    /// The material libraries and pictures that this file names; none of them is opened.
     pub references: Vec<String>,
 }
 

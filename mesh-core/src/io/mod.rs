@@ -5,6 +5,7 @@
 //! | read a source, with all that is needed to write it back | [`read_mesh`] |
 //! | read a target | [`read_soup`], [`read_points`] |
 //! | write a source with new positions | [`MeshFile::write`] |
+//! | carry, keep or drop its morph targets | [`MeshFile::set_morphs`] |
 //! | write a shape made in code | [`write_soup`] |
 //! | write any file all or nothing | [`write_atomic`] |
 //!

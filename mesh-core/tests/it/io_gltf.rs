@@ -367,3 +367,16 @@ fn many_nodes_without_a_scene_are_read_at_once() {
     assert_eq!(file("a.gltf", json).soup().faces.len(), 7);
     assert!(start.elapsed().as_secs() < 5);
 }
+
+/// Found by fuzzing: the new positions overwrote the indices of the faces, and the file did not read any more.
+#[test]
+fn positions_that_share_bytes_with_indices_are_refused() {
+    let json = document(&data_uri()).replace(
+        r#"{"buffer": 0, "byteOffset": 288, "byteLength": 8}"#,
+        r#"{"buffer": 0, "byteOffset": 4, "byteLength": 8}"#,
+    );
+    let read = file("a.gltf", json.clone());
+    assert_eq!(written(&read, &rest(&read)), json.into_bytes());
+    let error = read.to_bytes("a.gltf", &bent(&read)).unwrap_err();
+    assert!(error.to_string().contains("share bytes"), "{error}");
+}

@@ -287,3 +287,18 @@ fn a_line_of_many_groups_is_read_at_once() {
     assert_eq!(file("a.obj", text).contents().groups.len(), 200_000);
     assert!(start.elapsed().as_secs() < 5);
 }
+
+/// Found by fuzzing: areas of such coordinates overflow, and NaN is not equal to itself, so that normals of a mesh that
+/// had not moved were written as NaN.
+#[test]
+fn normals_between_huge_coordinates_keep_their_text() {
+    let text = "v 0 0 0\nv 1e308 5 0\nv 0 1e308 -1e308\nvn 0 0 1\nf 1//1 2//1 3//1\n";
+    let read = file("a.obj", text);
+    assert_eq!(written_text(&read, &rest(&read)), text);
+    let mut x = rest(&read);
+    x.as_mut_slice()[0].x = 2.0;
+    assert_eq!(
+        written_text(&read, &x),
+        text.replacen("v 0 0 0", "v 2 0 0", 1)
+    );
+}

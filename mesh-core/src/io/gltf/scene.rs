@@ -86,6 +86,8 @@ impl Scene {
                 .1
                 .push(faces);
         }
+        let images = container.root.images.iter().filter_map(|i| i.uri.clone());
+        scene.contents.references = images.filter(|uri| !uri.starts_with("data:")).collect();
         scene.contents.n_skins = container.root.skins.len();
         scene.contents.n_animations = container.root.animations.len();
         scene.contents.objects = Names::list(names.meshes);
