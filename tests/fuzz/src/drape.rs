@@ -35,7 +35,15 @@ pub fn load_warp(bytes: &[u8]) {
         std::env::temp_dir()
     };
     let path = folder.join(format!("drape-fuzz-{}.drape", std::process::id()));
-    std::fs::write(&path, bytes).expect("a temporary file is written");
+    // The last eight bytes are a checksum of all before, which chance would not meet.
+    let content = &bytes[..bytes.len().saturating_sub(8)];
+    let checksum = content
+        .iter()
+        .fold(0xcbf2_9ce4_8422_2325_u64, |hash, &byte| {
+            (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3)
+        });
+    let whole = [content, &checksum.to_le_bytes()].concat();
+    std::fs::write(&path, whole).expect("a temporary file is written");
     if let Ok(warp) = neural_drape::Warp::load(&path) {
         let _ = warp.apply(&[Point3::origin(), Point3::new(1.0, -2.0, 0.5)]);
     }
