@@ -255,6 +255,18 @@ fn what_cannot_move_is_told_before_the_work() {
         1,
     );
     assert!(told(quantised).contains("quantised"));
+    let two_sets = JSON.replace(
+        r#""targets": [{"POSITION": 1}]}]"#,
+        r#""targets": [{"POSITION": 1}]}, {"attributes": {"POSITION": 0, "NORMAL": 7}, "indices": 4}]"#,
+    );
+    let two_sets = two_sets.replace(
+        r#""count": 3, "type": "VEC2"}
+  ]"#,
+        r#""count": 3, "type": "VEC2"},
+    {"bufferView": 0, "byteOffset": 24, "componentType": 5126, "count": 6, "type": "VEC3"}
+  ]"#,
+    );
+    assert!(told(two_sets).contains("share positions but not normals"));
 }
 
 #[test]

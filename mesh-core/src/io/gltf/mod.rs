@@ -60,6 +60,12 @@ fn unmovable(
             "export positions as plain floats",
         ));
     }
+    if block.has_others {
+        return Some((
+            "a mesh whose parts share positions but not normals or tangents",
+            "export it with positions of its own for each part",
+        ));
+    }
     if block.to_scene.is_some_and(|m| !m.is_invertible()) {
         return Some((
             "a node flattened to nothing",

@@ -26,6 +26,8 @@ pub(super) struct Block {
     pub(super) uvs: Option<Rc<Layout>>,
     /// The accessors with displacements of morph targets.
     pub(super) displacements: BTreeSet<(Displaced, usize)>,
+    /// Whether primitives read these positions with other normals or tangents: only one set of them is seen.
+    pub(super) has_others: bool,
     /// From the mesh's own frame into the scene; none where they are the same.
     pub(super) to_scene: Option<Matrix4<f64>>,
     /// The vertices, as rows of the soup.
@@ -143,6 +145,11 @@ impl Scene {
             self.contents.n_colors += count(has_colors.is_some());
             self.contents.n_normals += count(normals.is_some());
         }
+        let differs = |own: &Option<Rc<Layout>>, new: &Option<Rc<Layout>>| {
+            own.as_ref().zip(new.as_ref()).is_some_and(|(a, b)| a != b)
+        };
+        block.has_others |=
+            differs(&block.normals, &normals) || differs(&block.tangents, &tangents);
         block.normals = block.normals.take().or(normals);
         block.tangents = block.tangents.take().or(tangents);
         block.uvs = block.uvs.take().or(uvs);
@@ -187,6 +194,7 @@ impl Scene {
             tangents: None,
             uvs: None,
             displacements: BTreeSet::new(),
+            has_others: false,
             to_scene,
             rows: first..self.soup.positions.len(),
         });
