@@ -15,7 +15,11 @@ pub(super) fn lost(
     let mut changed = Vec::new();
     let n_polygons = soup.faces.iter().filter(|face| face.len() > 3).count();
     if n_polygons > 0 && has_triangles_only(to) {
-        changed.push(format!("{n_polygons} polygons become triangles"));
+        let verb = if n_polygons == 1 { "becomes" } else { "become" };
+        changed.push(format!(
+            "{} {verb} triangles",
+            counted(n_polygons, "polygons")
+        ));
     }
     if to == Format::Stl {
         changed.push("each triangle gets corners of its own".to_owned());
@@ -56,7 +60,15 @@ fn lost_elements(from: Format, to: Format, soup: &PolygonSoup, contents: &Conten
         (contents.n_comments, "comments"),
     ];
     let lost = counts.iter().filter(|(n, _)| *n > 0);
-    lost.map(|(n, what)| format!("{n} {what}")).collect()
+    lost.map(|&(n, what)| counted(n, what)).collect()
+}
+
+/// `2 groups`, `1 group`.
+fn counted(n: usize, plural: &str) -> String {
+    match n {
+        1 => format!("1 {}", plural.trim_end_matches('s')),
+        _ => format!("{n} {plural}"),
+    }
 }
 
 /// Whether texture coordinates go from one format to the other.

@@ -101,7 +101,7 @@ fn one_line_tells_what_is_not_kept() {
     let told = |name: &str| obj.lost_in(name).unwrap();
     assert_eq!(
         told("a.glb"),
-        "from OBJ to GLB, these are not kept: 2 groups, 1 materials; 2 polygons become triangles; vertices are split \
+        "from OBJ to GLB, these are not kept: 2 groups, 1 material; 2 polygons become triangles; vertices are split \
          where texture coordinates differ; coordinates are rounded to single precision"
     );
     assert!(told("a.ply").contains("8 texture coordinates"));

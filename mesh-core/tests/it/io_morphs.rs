@@ -110,7 +110,7 @@ fn targets_are_counted() {
     assert_eq!(counts, (2, 1, 0));
     let lost = read.lost_in("a.obj").unwrap();
     assert!(
-        lost.contains("2 morph targets") && lost.contains("1 animations"),
+        lost.contains("2 morph targets") && lost.contains("1 animation"),
         "{lost}"
     );
 }
