@@ -9,6 +9,7 @@
 //! | measure polygons as triangles | [`Triangulation::new`] |
 //! | query a target | [`TriangleSoup::new`], [`PointCloud::new`], [`TargetSurface`] |
 //! | query a moving mesh | [`TriangleBvh`] |
+//! | draw random places | [`sampling::TriangleSampler`] |
 //! | mark pairs of places | [`Landmark`] |
 //! | build test solids | [`shapes`] |
 
@@ -21,6 +22,7 @@ mod ids;
 pub mod io;
 mod landmark;
 pub mod measure;
+pub mod sampling;
 pub mod shapes;
 mod soup;
 pub mod surface;

@@ -13,6 +13,7 @@
 //! | folded edges | [`FoldBarrier`] | beyond the paper |
 //! | angle distortion as Eq. 6 measures it | [`Conformal`] | beyond the paper |
 //! | one-rings turned and scaled only | [`LocalShape`] | beyond the paper |
+//! | sliding along the surface | [`Drift`] | beyond the paper |
 //! | uneven displacement | [`Smoothness`] | beyond the paper |
 //!
 //! [`SurfaceMatcher::resample`] draws samples and finds closest points; it alone changes what the distance terms see.
@@ -21,9 +22,11 @@ mod area_kl;
 mod chamfer;
 mod conformal;
 mod corner_angle;
+mod drift;
 mod flip;
 mod fold_barrier;
 mod gradient;
+mod hard_places;
 mod landmark_distance;
 mod local_shape;
 mod loss;
@@ -37,6 +40,7 @@ pub use area_kl::AreaKl;
 pub use chamfer::Chamfer;
 pub use conformal::Conformal;
 pub use corner_angle::CornerAngle;
+pub use drift::Drift;
 pub use flip::Flip;
 pub use fold_barrier::FoldBarrier;
 pub use landmark_distance::LandmarkDistance;

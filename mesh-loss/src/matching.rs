@@ -1,11 +1,14 @@
 //! Random places on both surfaces and their closest points on the other: what the distance terms look at.
 
+use mesh_core::sampling::{TrianglePlace, TriangleSampler};
 use mesh_core::{
-    Location, NormalSign, Point3, Positions, TargetSurface, TriangleBvh, Triangulation, UnitFrame,
-    Vector3, VertexData, VertexId,
+    Location, NormalSign, Point3, Positions, SurfaceSample, TargetSurface, TriangleBvh,
+    Triangulation, UnitFrame, Vector3, VertexData, VertexId,
 };
-use rand::{Rng, RngCore};
+use rand::RngCore;
 use rayon::prelude::*;
+
+use crate::hard_places::HardPlaces;
 
 /// A place on the moving mesh and the fixed point it is matched with.
 #[derive(Clone, Copy, Debug)]
@@ -40,6 +43,10 @@ pub struct Matches {
     pub to_target: Vec<SurfaceMatch>,
     /// Samples of the target, each with its closest place on the mesh.
     pub to_mesh: Vec<SurfaceMatch>,
+    /// Corners of the mesh that are far off, with their closest points; for [`crate::WorstDistance`] alone.
+    pub hard_to_target: Vec<SurfaceMatch>,
+    /// Corners of the target that are far off, with their closest places; for [`crate::WorstDistance`] alone.
+    pub hard_to_mesh: Vec<SurfaceMatch>,
 }
 
 /// How samples are drawn and pairs weighted.
@@ -51,6 +58,8 @@ pub struct SamplingConfig {
     pub face_uniform: f64,
     /// Pairs count by clamp(n·n′ + `normal_bias`, 0.05, 1); none: all pairs count 1.
     pub normal_bias: Option<f64>,
+    /// How many corners of each shape are kept in mind as far off; as many others are looked at anew each time.
+    pub n_hard: usize,
     /// Which pairs at open boundaries are left out.
     pub overlap: Overlap,
 }
@@ -83,6 +92,7 @@ pub struct SurfaceMatcher<'a> {
     frame: UnitFrame,
     bvh: TriangleBvh,
     boundary: Boundary,
+    hard: HardPlaces,
 }
 
 impl<'a> SurfaceMatcher<'a> {
@@ -99,6 +109,7 @@ impl<'a> SurfaceMatcher<'a> {
             frame,
             bvh: TriangleBvh::new(triangulation.corners(x).collect()),
             boundary: Boundary::new(triangulation, x.len()),
+            hard: HardPlaces::new(triangulation, x.len(), target),
         }
     }
 
@@ -115,6 +126,7 @@ impl<'a> SurfaceMatcher<'a> {
             n_samples,
             face_uniform: 0.0,
             normal_bias: None,
+            n_hard: 0,
             overlap: Overlap::default(),
         };
         let all = self.resample(x, &config, rng);
@@ -155,23 +167,41 @@ impl<'a> SurfaceMatcher<'a> {
         Matches {
             to_target: side.to_target(x, rng),
             to_mesh: side.to_mesh(&self.bvh, rng),
+            hard_to_target: self.hard.to_target(x, &side, rng),
+            hard_to_mesh: self.hard.to_mesh(x, &self.bvh, &side, rng),
         }
     }
 }
 
 /// What both directions of one resampling need.
-struct Side<'a> {
+pub(crate) struct Side<'a> {
     triangulation: &'a Triangulation,
-    target: &'a dyn TargetSurface,
+    pub(crate) target: &'a dyn TargetSurface,
     frame: UnitFrame,
     normals: &'a [Option<Vector3>],
     boundary: &'a Boundary,
-    config: &'a SamplingConfig,
+    pub(crate) config: &'a SamplingConfig,
 }
 
 impl Side<'_> {
     fn to_target(&self, x: &Positions, rng: &mut dyn RngCore) -> Vec<SurfaceMatch> {
         let places = sample_mesh(self.triangulation, x, self.config, rng);
+        let pairs = self.match_places(&places, x);
+        pairs.into_iter().flatten().collect()
+    }
+
+    fn to_mesh(&self, bvh: &TriangleBvh, rng: &mut dyn RngCore) -> Vec<SurfaceMatch> {
+        let samples = self.target.sample(self.config.n_samples, rng);
+        let pairs = self.match_samples(&samples, bvh);
+        pairs.into_iter().flatten().collect()
+    }
+
+    /// The closest point of the target to each place of the mesh at `x`; none beyond the target.
+    pub(crate) fn match_places(
+        &self,
+        places: &[TrianglePlace],
+        x: &Positions,
+    ) -> Vec<Option<SurfaceMatch>> {
         let points: Vec<Point3> = places
             .iter()
             .map(|&(t, w)| {
@@ -184,16 +214,21 @@ impl Side<'_> {
         places
             .iter()
             .zip(&hits)
-            .map(|(&(t, w), hit)| SurfaceMatch {
-                is_on_rim: self.target.is_on_boundary(&hit.location),
-                ..self.pair(t, w, self.frame.to_unit(&hit.point), &hit.location)
+            .map(|(&(t, w), hit)| {
+                let is_on_rim = self.target.is_on_boundary(&hit.location);
+                let pair = self.pair(t, w, self.frame.to_unit(&hit.point), &hit.location);
+                (!(is_on_rim && self.config.overlap.mesh_exceeds))
+                    .then_some(SurfaceMatch { is_on_rim, ..pair })
             })
-            .filter(|pair| !(self.config.overlap.mesh_exceeds && pair.is_on_rim))
             .collect()
     }
 
-    fn to_mesh(&self, bvh: &TriangleBvh, rng: &mut dyn RngCore) -> Vec<SurfaceMatch> {
-        let samples = self.target.sample(self.config.n_samples, rng);
+    /// The closest place of the mesh to each sample of the target; none beyond the mesh.
+    pub(crate) fn match_samples(
+        &self,
+        samples: &[SurfaceSample],
+        bvh: &TriangleBvh,
+    ) -> Vec<Option<SurfaceMatch>> {
         let points: Vec<Point3> = samples
             .iter()
             .map(|s| self.frame.to_unit(&s.point))
@@ -204,17 +239,16 @@ impl Side<'_> {
             .with_min_len(256)
             .zip(&points)
             .zip(&hits)
-            .filter_map(|((sample, point), hit)| match hit.location {
-                Location::Triangle { index, barycentric } => {
-                    let t = index as usize;
-                    Some(SurfaceMatch {
-                        is_on_rim: self.boundary.holds(t, barycentric),
-                        ..self.pair(t, barycentric, *point, &sample.location)
-                    })
-                }
-                Location::Point { .. } => None,
+            .map(|((sample, point), hit)| {
+                let Location::Triangle { index, barycentric } = hit.location else {
+                    return None;
+                };
+                let t = index as usize;
+                let is_on_rim = self.boundary.holds(t, barycentric);
+                let pair = self.pair(t, barycentric, *point, &sample.location);
+                (!(is_on_rim && self.config.overlap.target_exceeds))
+                    .then_some(SurfaceMatch { is_on_rim, ..pair })
             })
-            .filter(|pair| !(self.config.overlap.target_exceeds && pair.is_on_rim))
             .collect()
     }
 
@@ -305,36 +339,14 @@ fn sample_mesh(
     x: &Positions,
     config: &SamplingConfig,
     rng: &mut dyn RngCore,
-) -> Vec<(usize, [f64; 3])> {
-    if triangulation.is_empty() {
-        return Vec::new();
-    }
-    let mut total = 0.0;
-    let cumulative: Vec<f64> = triangulation
-        .corners(x)
-        .map(|corners| {
-            total += mesh_core::measure::triangle_area(corners);
-            total
-        })
-        .collect();
+) -> Vec<TrianglePlace> {
     let n_by_face = (config.n_samples as f64 * config.face_uniform).round() as usize;
-    (0..config.n_samples)
-        .map(|k| {
-            let t = if k < n_by_face {
-                rng.random_range(0..triangulation.len())
-            } else {
-                let a = rng.random::<f64>() * total;
-                cumulative
-                    .partition_point(|&c| c <= a)
-                    .min(triangulation.len() - 1)
-            };
-            (t, random_barycentric(rng))
-        })
-        .collect()
-}
-
-/// Uniform over a triangle.
-fn random_barycentric(rng: &mut dyn RngCore) -> [f64; 3] {
-    let (r, s) = (rng.random::<f64>().sqrt(), rng.random::<f64>());
-    [1.0 - r, r * (1.0 - s), r * s]
+    let n_by_area = config.n_samples.saturating_sub(n_by_face);
+    let areas = triangulation
+        .corners(x)
+        .map(mesh_core::measure::triangle_area);
+    let alike = std::iter::repeat_n(1.0, triangulation.len());
+    let mut places = TriangleSampler::new(alike).sample(n_by_face, rng);
+    places.extend(TriangleSampler::new(areas).sample(n_by_area, rng));
+    places
 }

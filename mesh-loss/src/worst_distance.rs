@@ -6,9 +6,11 @@ use crate::{Loss, Matches, SurfaceMatch};
 
 /// Mean of the largest `share` of the matched distances, both ways.
 ///
-/// `W = Σ over both ways of 1/k Σ of the k largest |pₖ − qₖ|`, with k = ⌈share · n⌉
+/// `W = Σ over both ways of 1/k Σ of the k largest |pₖ − qₖ|`, with k = ⌈share · n⌉ for n samples
 ///
-/// The weights of the pairs do not count: the tip of an ear is seen from its side. Units: those of the coordinates. Q hangs on the Hausdorff distance, which an ear tip decides.
+/// The corners that are far off compete with the samples: a tip is where a sample hardly ever falls. The weights of the
+/// pairs do not count: the tip of an ear is seen from its side. Units: those of the coordinates. Q hangs on the
+/// Hausdorff distance, which an ear tip decides.
 /// Source: beyond the paper. Off in `paper`.
 pub struct WorstDistance<'a> {
     /// The pairs.
@@ -19,10 +21,14 @@ pub struct WorstDistance<'a> {
 
 impl Loss for WorstDistance<'_> {
     fn accumulate(&self, x: &Positions, weight: f64, grad: &mut VertexData<Vector3>) -> f64 {
-        [&self.matches.to_target, &self.matches.to_mesh]
-            .into_iter()
-            .map(|matches| self.mean_of_largest(matches, x, weight, grad))
-            .sum()
+        let m = self.matches;
+        [
+            (&m.to_target, &m.hard_to_target),
+            (&m.to_mesh, &m.hard_to_mesh),
+        ]
+        .into_iter()
+        .map(|(matches, hard)| self.mean_of_largest(matches, hard, x, weight, grad))
+        .sum()
     }
 }
 
@@ -30,6 +36,7 @@ impl WorstDistance<'_> {
     fn mean_of_largest(
         &self,
         matches: &[SurfaceMatch],
+        hard: &[SurfaceMatch],
         x: &Positions,
         weight: f64,
         grad: &mut VertexData<Vector3>,
@@ -38,8 +45,14 @@ impl WorstDistance<'_> {
         if k == 0 {
             return 0.0;
         }
+        let pair_at = |row: usize| {
+            matches
+                .get(row)
+                .unwrap_or_else(|| &hard[row - matches.len()])
+        };
         let mut ranked: Vec<(f64, usize)> = matches
             .iter()
+            .chain(hard)
             .enumerate()
             .map(|(row, pair)| (pair.offset(x).norm(), row))
             .collect();
@@ -49,7 +62,7 @@ impl WorstDistance<'_> {
         ranked.sort_unstable_by(farther);
 
         for &(_, row) in &ranked {
-            let pair = &matches[row];
+            let pair = pair_at(row);
             let offset = pair.offset(x);
             let distance = offset.norm();
             if distance > f64::MIN_POSITIVE {

@@ -1,10 +1,11 @@
 //! Distances between a draped mesh and its target, both ways, in the common frame.
 
+use mesh_core::sampling::TriangleSampler;
 use mesh_core::{
     Location, Point3, Positions, SurfacePoint, TargetSurface, TriangleBvh, Triangulation,
-    VertexData,
+    Vector3, VertexData,
 };
-use rand::{Rng, RngCore, SeedableRng};
+use rand::{RngCore, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 use crate::evaluate::EvaluationConfig;
@@ -127,29 +128,12 @@ fn sample_by_area(
     rng: &mut ChaCha8Rng,
 ) -> Vec<Point3> {
     let corners: Vec<[Point3; 3]> = triangulation.corners(x).collect();
-    let Some(last) = corners.len().checked_sub(1) else {
-        return Vec::new();
-    };
-    let mut areas = mesh_core::measure::triangle_areas(triangulation, x);
-    let mut total: f64 = areas.iter().sum();
-    if total == 0.0 {
-        areas.fill(1.0);
-        total = corners.len() as f64;
-    }
-    let (mut row, mut end) = (0, areas[0]);
-    let mut point_in_share = |share: usize| {
-        let at = (share as f64 + rng.random::<f64>()) / n as f64 * total;
-        while at >= end && row < last {
-            row += 1;
-            end += areas[row];
-        }
-        point_in_triangle(corners[row], rng.random(), rng.random())
-    };
-    (0..n).map(&mut point_in_share).collect()
-}
-
-/// Uniform over the triangle for `s`, `t` uniform in [0, 1).
-fn point_in_triangle([a, b, c]: [Point3; 3], s: f64, t: f64) -> Point3 {
-    let root = s.sqrt();
-    a + (b - a) * (root * (1.0 - t)) + (c - a) * (root * t)
+    let areas = mesh_core::measure::triangle_areas(triangulation, x);
+    let places = TriangleSampler::new(areas).sample(n, rng).into_iter();
+    places
+        .map(|(row, weights)| {
+            let weighted = (0..3).map(|k| corners[row][k].coords * weights[k]);
+            Point3::from(weighted.sum::<Vector3>())
+        })
+        .collect()
 }

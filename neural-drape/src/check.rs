@@ -105,4 +105,13 @@ impl DrapeConfig {
         }
         self.stages.last().map_or(Weights::ZERO, |s| s.to)
     }
+
+    pub(crate) fn is_stage_start(&self, iteration: usize) -> bool {
+        let mut start = 0;
+        self.stages.iter().any(|stage| {
+            let is_start = iteration == start;
+            start += stage.n_iterations;
+            is_start
+        })
+    }
 }

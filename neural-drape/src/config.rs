@@ -120,6 +120,8 @@ pub struct Sampling {
     pub face_uniform: f64,
     /// Pairs count by clamp(n·n′ + bias, 0.05, 1); without it all count 1.
     pub normal_bias: Option<f64>,
+    /// Corners of each shape that the worst distance keeps in mind.
+    pub n_hard: usize,
 }
 
 impl Sampling {
@@ -137,6 +139,7 @@ impl Sampling {
                 .min(self.max_samples.max(self.n_samples)),
             face_uniform: self.face_uniform,
             normal_bias: self.normal_bias,
+            n_hard: self.n_hard,
             overlap,
         }
     }
@@ -182,6 +185,8 @@ pub struct Weights {
     pub local_shape: f64,
     /// [`mesh_loss::Smoothness`]
     pub smoothness: f64,
+    /// [`mesh_loss::Drift`], from where each stage starts
+    pub drift: f64,
 }
 
 impl Weights {
@@ -199,6 +204,7 @@ impl Weights {
         conformal: 0.0,
         local_shape: 0.0,
         smoothness: 0.0,
+        drift: 0.0,
     };
 
     pub(crate) fn between(a: &Self, b: &Self, t: f64) -> Self {
@@ -216,6 +222,7 @@ impl Weights {
             conformal: mix(a.conformal, b.conformal),
             local_shape: mix(a.local_shape, b.local_shape),
             smoothness: mix(a.smoothness, b.smoothness),
+            drift: mix(a.drift, b.drift),
         }
     }
 }

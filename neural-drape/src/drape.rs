@@ -4,7 +4,7 @@ use mesh_core::{
     Landmark, Positions, TargetSurface, Triangulation, UnitFrame, Vector3, VertexData,
 };
 use mesh_loss::{
-    AreaKl, Beyond, Chamfer, Conformal, CornerAngle, Flip, FoldBarrier, LandmarkDistance,
+    AreaKl, Beyond, Chamfer, Conformal, CornerAngle, Drift, Flip, FoldBarrier, LandmarkDistance,
     LocalShape, Loss, Matches, NormalAgreement, Overlap, Smoothness, SurfaceMatcher,
     TriangleQuality, WorstDistance,
 };
@@ -96,6 +96,8 @@ struct Structure<'a> {
     conformal: Conformal<'a>,
     local_shape: LocalShape,
     smoothness: Smoothness,
+    drift: Drift,
+    triangulation: &'a Triangulation,
 }
 
 impl<'a> Drape<'a> {
@@ -165,6 +167,10 @@ impl<'a> Drape<'a> {
             .at(self.iteration, self.n_iterations);
         let progress = self.iteration as f64 / self.n_iterations as f64;
         self.parametrization.set_progress(progress)?;
+        if self.config.is_stage_start(self.iteration) {
+            let x = self.parametrization.positions();
+            self.structure.drift = Drift::new(self.structure.triangulation, x);
+        }
 
         let sampling = self.config.sampling.at(self.iteration, self.overlap);
         let x = self.parametrization.positions();
@@ -387,7 +393,7 @@ impl<'a> Drape<'a> {
     /// Eq. 3 and its companions.
     fn add_structural_terms(&mut self, w: &Weights) -> Vec<TermReport> {
         let s = &self.structure;
-        let terms: [Term<'_>; 8] = [
+        let terms: [Term<'_>; 9] = [
             ("angles", w.corner_angle, &s.corner_angle),
             ("areas", w.area_kl, &s.area_kl),
             ("skinny", w.triangle_quality, &s.triangle_quality),
@@ -396,6 +402,7 @@ impl<'a> Drape<'a> {
             ("conformal", w.conformal, &s.conformal),
             ("local shape", w.local_shape, &s.local_shape),
             ("smoothness", w.smoothness, &s.smoothness),
+            ("drift", w.drift, &s.drift),
         ];
         accumulate(&terms, self.parametrization.positions(), &mut self.gradient)
     }
@@ -439,6 +446,8 @@ impl<'a> Structure<'a> {
             conformal: Conformal::new(t, input.rest),
             local_shape: LocalShape::new(t, input.rest),
             smoothness: Smoothness::new(t, initial),
+            drift: Drift::new(t, initial),
+            triangulation: t,
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Triangle soup as a target: duplicates, degenerate triangles, holes, random orientation are all welcome.
 
-use rand::{Rng, RngCore};
+use rand::RngCore;
 use rayon::prelude::*;
 
 use super::boundary::Boundary;
@@ -9,6 +9,7 @@ use super::stray::Strays;
 use super::weld::Weld;
 use super::{Location, NormalSign, SurfacePoint, SurfaceSample, TargetSurface};
 use crate::measure::{triangle_area, triangle_normal};
+use crate::sampling::TriangleSampler;
 use crate::{Aabb, Point3, PolygonSoup, TopologyError, TriangleBvh, Triangulation, Vector3};
 
 /// A target made of triangles, of which nothing is expected but finite corners.
@@ -29,8 +30,8 @@ pub struct TriangleSoup {
     boundary: Boundary,
     orientation: Orientation,
     vertices: Vec<Point3>,
-    /// Area of all triangles up to and including each.
-    cumulative_areas: Vec<f64>,
+    area: f64,
+    sampler: TriangleSampler,
 }
 
 impl TriangleSoup {
@@ -45,14 +46,8 @@ impl TriangleSoup {
         }
         let corners = |t: &[u32; 3]| t.map(|v| positions[v as usize]);
         let bvh = TriangleBvh::new(triangles.iter().map(corners).collect());
-        let mut area = 0.0;
-        let cumulative_areas = triangles
-            .iter()
-            .map(|t| {
-                area += triangle_area(corners(t));
-                area
-            })
-            .collect();
+        let areas = || triangles.iter().map(|t| triangle_area(corners(t)));
+        let (area, sampler) = (areas().sum(), TriangleSampler::new(areas()));
 
         let weld = Weld::new(&positions, &triangles);
         Ok(Self {
@@ -62,7 +57,8 @@ impl TriangleSoup {
                 .used_vertices()
                 .map(|v| positions[v as usize])
                 .collect(),
-            cumulative_areas,
+            area,
+            sampler,
             bvh,
         })
     }
@@ -74,7 +70,7 @@ impl TriangleSoup {
 
     /// Area of the surface, in squared units of the coordinates.
     pub fn area(&self) -> f64 {
-        self.cumulative_areas.last().copied().unwrap_or(0.0)
+        self.area
     }
 
     /// Whether the surface has an open boundary.
@@ -104,19 +100,6 @@ impl TriangleSoup {
         let faces = (0..n).map(|t| vec![3 * t, 3 * t + 1, 3 * t + 2]).collect();
         Self::new(PolygonSoup { positions, faces }).ok()
     }
-
-    /// A triangle with probability proportional to its area; any if none has area.
-    fn random_triangle(&self, rng: &mut dyn RngCore) -> u32 {
-        let n = self.bvh.len();
-        if self.area() > 0.0 {
-            let at = rng.random::<f64>() * self.area();
-            self.cumulative_areas
-                .partition_point(|&c| c <= at)
-                .min(n - 1) as u32
-        } else {
-            rng.random_range(0..n) as u32
-        }
-    }
 }
 
 impl TargetSurface for TriangleSoup {
@@ -127,18 +110,18 @@ impl TargetSurface for TriangleSoup {
     }
 
     fn sample(&self, n: usize, rng: &mut dyn RngCore) -> Vec<SurfaceSample> {
-        let mut sample = || {
-            let index = self.random_triangle(rng);
-            let (root, share) = (rng.random::<f64>().sqrt(), rng.random::<f64>());
-            let barycentric = [1.0 - root, root * (1.0 - share), root * share];
-            let corners = self.bvh.triangle(index);
-            let weighted = (0..3).map(|k| corners[k].coords * barycentric[k]);
-            SurfaceSample {
-                point: Point3::from(weighted.sum::<Vector3>()),
-                location: Location::Triangle { index, barycentric },
-            }
-        };
-        (0..n).map(|_| sample()).collect()
+        let places = self.sampler.sample(n, rng).into_iter();
+        places
+            .map(|(row, barycentric)| {
+                let index = row as u32;
+                let corners = self.bvh.triangle(index);
+                let weighted = (0..3).map(|k| corners[k].coords * barycentric[k]);
+                SurfaceSample {
+                    point: Point3::from(weighted.sum::<Vector3>()),
+                    location: Location::Triangle { index, barycentric },
+                }
+            })
+            .collect()
     }
 
     fn vertices(&self) -> Vec<Point3> {

@@ -99,6 +99,7 @@ fn matches(s: &mut Setup, normal_bias: Option<f64>) -> Matches {
         n_samples: 40,
         face_uniform: 0.5,
         normal_bias,
+        n_hard: 20,
         overlap: mesh_loss::Overlap::default(),
     };
     SurfaceMatcher::new(&s.triangulation, &s.moved, &target, UNIT)

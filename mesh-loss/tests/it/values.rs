@@ -81,6 +81,7 @@ fn chamfer_of_a_shifted_plane_is_the_shift() {
         n_samples: 100,
         face_uniform: 0.5,
         normal_bias: None,
+        n_hard: 20,
         overlap: mesh_loss::Overlap::default(),
     };
     let mut rng = <rand_chacha::ChaCha8Rng as rand::SeedableRng>::seed_from_u64(3);
