@@ -4,9 +4,9 @@ use mesh_core::{Positions, Vector3, VertexData};
 
 use crate::{Loss, Matches, SurfaceMatch};
 
-/// Mean of the largest `share` of the matched distances, both ways.
+/// Mean excess of the largest `share` of the matched distances over a tolerance, both ways.
 ///
-/// `W = Σ over both ways of 1/k Σ of the k largest |pₖ − qₖ|`, with k = ⌈share · n⌉ for n samples
+/// `W = Σ over both ways of 1/k Σ over the k largest of max(0, |pₖ − qₖ| − τ)`, with k = ⌈share · n⌉ for n samples
 ///
 /// The corners that are far off compete with the samples: a tip is where a sample hardly ever falls. The weights of the
 /// pairs do not count: the tip of an ear is seen from its side. Units: those of the coordinates. Q hangs on the
@@ -17,6 +17,8 @@ pub struct WorstDistance<'a> {
     pub matches: &'a Matches,
     /// Which share of them counts, 0..=1.
     pub share: f64,
+    /// τ: a distance up to this is good enough.
+    pub tolerance: f64,
 }
 
 impl Loss for WorstDistance<'_> {
@@ -65,10 +67,11 @@ impl WorstDistance<'_> {
             let pair = pair_at(row);
             let offset = pair.offset(x);
             let distance = offset.norm();
-            if distance > f64::MIN_POSITIVE {
+            if distance > self.tolerance.max(f64::MIN_POSITIVE) {
                 pair.scatter(&(offset * (weight / (k as f64 * distance))), grad);
             }
         }
-        ranked.iter().map(|(distance, _)| distance).sum::<f64>() / k as f64
+        let excess = |&(distance, _): &(f64, usize)| (distance - self.tolerance).max(0.0);
+        ranked.iter().map(excess).sum::<f64>() / k as f64
     }
 }

@@ -26,6 +26,8 @@ pub struct DrapeConfig {
     pub overlap: OverlapMode,
     /// Which share of the distances counts as worst, 0..=1.
     pub worst_share: f64,
+    /// A distance up to this is never counted as worst, in longest sides of the target.
+    pub worst_tolerance: f64,
     /// Triangles with a smaller Q_f (Eq. 4) are skinny, 0..=1.
     pub skinny_threshold: f64,
     /// Cosine of the angle between neighbours' normals at which the fold barrier begins, −1..=1.

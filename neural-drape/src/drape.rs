@@ -380,6 +380,7 @@ impl<'a> Drape<'a> {
         let worst = WorstDistance {
             matches,
             share: self.config.worst_share,
+            tolerance: self.config.worst_tolerance,
         };
         let terms: [Term<'_>; 4] = [
             ("chamfer", w.chamfer, &Chamfer(matches)),

@@ -56,6 +56,7 @@ impl DrapeConfig {
             },
             overlap: OverlapMode::Auto,
             worst_share: 0.003,
+            worst_tolerance: 0.006,
             skinny_threshold: 0.2,
             fold_limit: 0.3,
             stages: standard_stages(),
@@ -123,6 +124,7 @@ impl DrapeConfig {
             },
             overlap: OverlapMode::Full,
             worst_share: 0.01,
+            worst_tolerance: 0.0,
             skinny_threshold: 0.1,
             fold_limit: 0.3,
             stages: vec![constant(1000, first), constant(500, second)],
@@ -150,11 +152,13 @@ fn standard_stages() -> Vec<Stage> {
         corner_angle: 0.3,
         area_kl: 0.3,
         flip: 0.0,
+        drift: 7.5 * AUTHORS_SIDE * AUTHORS_SIDE,
         ..start
     };
     let end = Weights {
-        worst_distance: 0.6 * AUTHORS_SIDE,
-        landmark: 10.0 * AUTHORS_SIDE * AUTHORS_SIDE,
+        worst_distance: 1.8 * AUTHORS_SIDE,
+        landmark: 35.0 * AUTHORS_SIDE * AUTHORS_SIDE,
+        drift: 4.0 * AUTHORS_SIDE * AUTHORS_SIDE,
         triangle_quality: 0.5,
         fold_barrier: 10.0,
         ..fit

@@ -29,10 +29,10 @@ impl VerticesConfig {
     pub const fn standard() -> Self {
         Self {
             smoothing_start: 0.1,
-            smoothing_end: 0.02,
+            smoothing_end: 0.014,
             n_levels: 6,
             betas: [0.9, 0.99],
-            adaptivity: 0.5,
+            adaptivity: 0.25,
             adapt_from: 0.66,
         }
     }

@@ -91,6 +91,7 @@ fn chamfer_of_a_shifted_plane_is_the_shift() {
     let worst = WorstDistance {
         matches: &matches,
         share: 0.05,
+        tolerance: 0.0,
     };
     assert!((value_and_gradient(&worst, &shifted).0 - 0.5).abs() < 1e-12);
 }
