@@ -6,7 +6,7 @@ use mesh_core::{Positions, UnitFrame, VertexData};
 use mesh_loss::Overlap;
 use mesh_metrics::{EvaluationConfig, EvaluationInput, Report};
 use neural_drape::network::NetworkMap;
-use neural_drape::{Drape, DrapeInput, Regions, Warp, WarpInput};
+use neural_drape::{Defects, Drape, DrapeInput, Regions, Repair, Warp, WarpInput};
 
 use crate::explain::{explain, Counted, Explanation};
 use crate::initial::{deform, Initial};
@@ -26,7 +26,7 @@ pub(crate) struct Run {
     /// The result in words.
     pub(crate) explanation: Explanation,
     pub(crate) history: History,
-    /// What was assumed, and which parts of either shape were left out, in words.
+    /// What was assumed, which parts of either shape were left out, and what was repaired, in words.
     pub(crate) notes: Vec<String>,
     /// Seconds of each stage.
     pub(crate) stages: Vec<(&'static str, f64)>,
@@ -68,7 +68,7 @@ impl Run {
             network: drape.network,
             history: drape.history,
             notes: {
-                notes.extend(drape.left_out);
+                notes.extend(drape.remarks);
                 notes
             },
             report,
@@ -164,8 +164,8 @@ struct Draped {
     positions: Positions,
     network: Option<NetworkMap>,
     history: History,
-    /// Which parts were left out, in words.
-    left_out: Vec<String>,
+    /// What it did of its own accord, in words.
+    remarks: Vec<String>,
     attraction: VertexData<f64>,
     overlap: Overlap,
 }
@@ -210,19 +210,48 @@ fn drape(
     if !regions.is_none() {
         drape.set_regions(regions)?;
     }
-    let left_out = left_out(&drape);
     let mut progress = Progress::start(drape.n_iterations());
     while let Some(step) = drape.step()? {
         progress.show(&step);
     }
+    let end = drape.finish();
+    let mut remarks = left_out(&drape);
+    remarks.extend(repaired(&end));
     Ok(Draped {
-        positions: drape.positions(),
+        positions: end.positions,
         network: drape.network(),
         history: progress.finish(),
-        left_out,
+        remarks,
         attraction: drape.attraction().clone(),
         overlap: drape.overlap(),
     })
+}
+
+/// What the last stage took out, and what it could not.
+fn repaired(end: &Repair) -> Vec<String> {
+    let (n_before, n_left) = (count(&end.before), count(&end.left));
+    let mut remarks = Vec::new();
+    if n_before > n_left {
+        remarks.push(format!(
+            "{} folded or skinny triangles were taken out at the end (setting repair)",
+            n_before - n_left
+        ));
+    }
+    remarks.extend(end.left.folds.iter().map(|[a, b]| {
+        let (a, b) = (a.index(), b.index());
+        format!("a fold is left at the edge between vertices {a} and {b}; a landmark near it may undo it")
+    }));
+    remarks.extend(
+        end.left
+            .skinny
+            .iter()
+            .map(|t| format!("triangle {t} is left skinny; a landmark near it may widen it")),
+    );
+    remarks
+}
+
+fn count(defects: &Defects) -> usize {
+    defects.folds.len() + defects.skinny.len()
 }
 
 /// Seconds between laps.

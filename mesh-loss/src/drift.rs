@@ -1,5 +1,6 @@
 //! Vertices do not slide along the surface.
 
+use mesh_core::measure::vertex_normals;
 use mesh_core::{Positions, Triangulation, Vector3, VertexData};
 
 use crate::Loss;
@@ -18,18 +19,17 @@ pub struct Drift {
 impl Drift {
     /// The term that keeps vertices from sliding away from `reference`.
     pub fn new(triangulation: &Triangulation, reference: &Positions) -> Self {
-        let mut normals = VertexData::new(reference.len(), Vector3::zeros());
-        for &[a, b, c] in triangulation.triangles() {
-            let p = reference[a];
-            let twice_area = (reference[b] - p).cross(&(reference[c] - p));
-            for v in [a, b, c] {
-                normals[v] += twice_area;
-            }
-        }
         Self {
             reference: reference.clone(),
-            normals: normals.map(|n| n.try_normalize(0.0).unwrap_or_else(Vector3::zeros)),
+            normals: vertex_normals(triangulation, reference),
         }
+    }
+}
+
+impl Drift {
+    /// The shape from which vertices should not slide away.
+    pub fn reference(&self) -> &Positions {
+        &self.reference
     }
 }
 

@@ -6,14 +6,22 @@ use rand::{Rng, RngCore};
 
 use crate::matching::{Side, SurfaceMatch};
 
+/// The corners kept in mind, as rows: what a matcher remembers from one resampling to the next.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct HardCorners {
+    /// Among the vertices of the mesh that a triangle uses.
+    pub of_mesh: Vec<usize>,
+    /// Among the corners of the target.
+    pub of_target: Vec<usize>,
+}
+
 /// The corners of both shapes, and those that were farthest off when last seen.
 ///
 /// A random sample falls on the tip of an ear with probability 0, and the tip decides the Hausdorff distance.
 pub(crate) struct HardPlaces {
     mesh_corners: Vec<TrianglePlace>,
     target_corners: Vec<Point3>,
-    of_mesh: Vec<TrianglePlace>,
-    of_target: Vec<SurfaceSample>,
+    kept: HardCorners,
 }
 
 impl HardPlaces {
@@ -32,29 +40,28 @@ impl HardPlaces {
         Self {
             mesh_corners: corner_of.into_iter().flatten().collect(),
             target_corners: target.vertices(),
-            of_mesh: Vec::new(),
-            of_target: Vec::new(),
+            kept: HardCorners::default(),
         }
     }
 
     /// The mesh's far corners, each with its closest point on the target.
-    pub(crate) fn to_target(
+    pub(crate) fn match_mesh(
         &mut self,
         x: &Positions,
         side: &Side<'_>,
         rng: &mut dyn RngCore,
     ) -> Vec<SurfaceMatch> {
         let n = side.config.n_hard;
-        let mut places = std::mem::take(&mut self.of_mesh);
-        places.extend(random_rows(n, self.mesh_corners.len(), rng).map(|k| self.mesh_corners[k]));
-        let pairs = side.match_places(&places, x);
-        let (places, pairs) = farthest(places, pairs, x, n);
-        self.of_mesh = places;
+        let mut rows = std::mem::take(&mut self.kept.of_mesh);
+        rows.extend(random_rows(n, self.mesh_corners.len(), rng));
+        let places: Vec<TrianglePlace> = rows.iter().map(|&k| self.mesh_corners[k]).collect();
+        let (rows, pairs) = farthest(rows, side.match_places(&places, x), x, n);
+        self.kept.of_mesh = rows;
         pairs
     }
 
     /// The target's far corners, each with its closest place on the mesh.
-    pub(crate) fn to_mesh(
+    pub(crate) fn match_target(
         &mut self,
         x: &Positions,
         bvh: &TriangleBvh,
@@ -62,16 +69,37 @@ impl HardPlaces {
         rng: &mut dyn RngCore,
     ) -> Vec<SurfaceMatch> {
         let n = side.config.n_hard;
-        let mut samples = std::mem::take(&mut self.of_target);
-        samples.extend(random_rows(n, self.target_corners.len(), rng).map(|k| {
-            let point = self.target_corners[k];
-            let location = side.target.closest_point(&point).location;
-            SurfaceSample { point, location }
-        }));
-        let pairs = side.match_samples(&samples, bvh);
-        let (samples, pairs) = farthest(samples, pairs, x, n);
-        self.of_target = samples;
+        let mut rows = std::mem::take(&mut self.kept.of_target);
+        rows.extend(random_rows(n, self.target_corners.len(), rng));
+        let points: Vec<Point3> = rows.iter().map(|&k| self.target_corners[k]).collect();
+        let samples: Vec<SurfaceSample> = points
+            .iter()
+            .zip(side.target.closest_points(&points))
+            .map(|(&point, hit)| SurfaceSample {
+                point,
+                location: hit.location,
+            })
+            .collect();
+        let (rows, pairs) = farthest(rows, side.match_samples(&samples, bvh), x, n);
+        self.kept.of_target = rows;
         pairs
+    }
+
+    pub(crate) fn kept(&self) -> &HardCorners {
+        &self.kept
+    }
+
+    /// Keeps these instead; whether all their rows are there.
+    pub(crate) fn keep(&mut self, kept: HardCorners) -> bool {
+        let fits = kept.of_mesh.iter().all(|&k| k < self.mesh_corners.len())
+            && kept
+                .of_target
+                .iter()
+                .all(|&k| k < self.target_corners.len());
+        if fits {
+            self.kept = kept;
+        }
+        fits
     }
 }
 
@@ -81,26 +109,20 @@ fn random_rows(n: usize, len: usize, rng: &mut dyn RngCore) -> impl Iterator<Ite
     (0..n).map(move |_| rng.random_range(0..len))
 }
 
-/// The `n` places whose pairs are farthest off, the farthest first, each once.
-fn farthest<P: Copy + PartialEq>(
-    places: Vec<P>,
+/// The `n` rows whose pairs are farthest off, the farthest first, each once.
+fn farthest(
+    rows: Vec<usize>,
     pairs: Vec<Option<SurfaceMatch>>,
     x: &Positions,
     n: usize,
-) -> (Vec<P>, Vec<SurfaceMatch>) {
-    let mut ranked: Vec<(f64, usize, P, SurfaceMatch)> = places
+) -> (Vec<usize>, Vec<SurfaceMatch>) {
+    let mut ranked: Vec<(f64, usize, SurfaceMatch)> = rows
         .into_iter()
         .zip(pairs)
-        .enumerate()
-        .filter_map(|(row, (place, pair))| {
-            pair.map(|pair| (pair.offset(x).norm_squared(), row, place, pair))
-        })
+        .filter_map(|(row, pair)| pair.map(|pair| (pair.offset(x).norm_squared(), row, pair)))
         .collect();
     ranked.sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
-    ranked.dedup_by(|b, a| a.0 == b.0 && a.2 == b.2);
+    ranked.dedup_by_key(|r| r.1);
     ranked.truncate(n);
-    ranked
-        .into_iter()
-        .map(|(_, _, place, pair)| (place, pair))
-        .unzip()
+    ranked.into_iter().map(|(_, row, pair)| (row, pair)).unzip()
 }

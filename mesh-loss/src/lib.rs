@@ -14,7 +14,6 @@
 //! | angle distortion as Eq. 6 measures it | [`Conformal`] | beyond the paper |
 //! | one-rings turned and scaled only | [`LocalShape`] | beyond the paper |
 //! | sliding along the surface | [`Drift`] | beyond the paper |
-//! | uneven displacement | [`Smoothness`] | beyond the paper |
 //!
 //! [`SurfaceMatcher::resample`] draws samples and finds closest points; it alone changes what the distance terms see.
 
@@ -32,7 +31,6 @@ mod local_shape;
 mod loss;
 mod matching;
 mod normal_agreement;
-mod smoothness;
 mod triangle_quality;
 mod worst_distance;
 
@@ -43,11 +41,11 @@ pub use corner_angle::CornerAngle;
 pub use drift::Drift;
 pub use flip::Flip;
 pub use fold_barrier::FoldBarrier;
+pub use hard_places::HardCorners;
 pub use landmark_distance::LandmarkDistance;
 pub use local_shape::LocalShape;
 pub use loss::Loss;
 pub use matching::{Beyond, Matches, Overlap, SamplingConfig, SurfaceMatch, SurfaceMatcher};
 pub use normal_agreement::NormalAgreement;
-pub use smoothness::Smoothness;
 pub use triangle_quality::TriangleQuality;
 pub use worst_distance::WorstDistance;

@@ -1,6 +1,6 @@
 //! Every one-ring stays a turned and scaled copy of itself.
 
-use mesh_core::{Positions, Triangulation, Vector3, VertexData};
+use mesh_core::{Positions, Triangulation, Vector3, VertexData, VertexId};
 use nalgebra::Matrix3;
 
 use crate::Loss;
@@ -57,13 +57,52 @@ impl LocalShape {
     }
 }
 
+impl LocalShape {
+    /// Moves each vertex of `free` once to where its edges would have it, in their order:
+    /// `xᵢ ← Σⱼ wᵢⱼ (xⱼ + ½ (sᵢRᵢ + sⱼRⱼ)(rᵢ − rⱼ)) / Σⱼ wᵢⱼ`, with the best frames sR of the one-rings.
+    ///
+    /// Repeated, it undoes folds of a small patch from its surroundings inwards. Vertices without an edge stay.
+    pub fn relax(&self, x: &mut Positions, free: &[VertexId]) {
+        for &v in free {
+            let i = v.index();
+            let frame = self.frame(x.as_slice(), i);
+            let (mut sum, mut total) = (Vector3::zeros(), 0.0);
+            for k in self.ring(i) {
+                let j = self.neighbours[k] as usize;
+                let carried = (frame + self.frame(x.as_slice(), j)) * self.rest[k] * 0.5;
+                sum += (x.as_slice()[j].coords - carried) * self.weights[k];
+                total += self.weights[k];
+            }
+            if total > 0.0 {
+                x[v] = (sum / total).into();
+            }
+        }
+    }
+
+    fn ring(&self, i: usize) -> std::ops::Range<usize> {
+        self.starts[i] as usize..self.starts[i + 1] as usize
+    }
+
+    /// The turn and scale that carry the one-ring of vertex `i` at rest best to where it is.
+    fn frame(&self, x: &[mesh_core::Point3], i: usize) -> Matrix3<f64> {
+        let mut covariance = Matrix3::zeros();
+        for k in self.ring(i) {
+            let e = x[self.neighbours[k] as usize] - x[i];
+            covariance += (e * self.weights[k]) * self.rest[k].transpose();
+        }
+        let rotation = closest_rotation(&covariance);
+        let scale = rotation.dot(&covariance) / self.rest_square[i].max(f64::MIN_POSITIVE);
+        rotation * scale
+    }
+}
+
 impl Loss for LocalShape {
     fn accumulate(&self, x: &Positions, weight: f64, grad: &mut VertexData<Vector3>) -> f64 {
         let share = 1.0 / x.len().max(1) as f64;
         let (x, grad) = (x.as_slice(), grad.as_mut_slice());
         let mut sum = 0.0;
         for i in 0..x.len() {
-            let ring = self.starts[i] as usize..self.starts[i + 1] as usize;
+            let ring = self.ring(i);
             let mut covariance = Matrix3::zeros();
             let mut square = 0.0;
             for k in ring.clone() {

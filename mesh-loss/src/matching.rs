@@ -8,7 +8,7 @@ use mesh_core::{
 use rand::RngCore;
 use rayon::prelude::*;
 
-use crate::hard_places::HardPlaces;
+use crate::hard_places::{HardCorners, HardPlaces};
 
 /// A place on the moving mesh and the fixed point it is matched with.
 #[derive(Clone, Copy, Debug)]
@@ -143,6 +143,17 @@ impl<'a> SurfaceMatcher<'a> {
         }
     }
 
+    /// The corners that are kept in mind.
+    pub fn hard_corners(&self) -> &HardCorners {
+        self.hard.kept()
+    }
+
+    /// Keeps these corners in mind instead, to go on as an earlier matcher of the same shapes would; whether they are
+    /// corners of these shapes. If not, nothing changes.
+    pub fn set_hard_corners(&mut self, corners: HardCorners) -> bool {
+        self.hard.keep(corners)
+    }
+
     /// Fresh samples of both surfaces, matched with the mesh at `x`.
     pub fn resample(
         &mut self,
@@ -167,8 +178,8 @@ impl<'a> SurfaceMatcher<'a> {
         Matches {
             to_target: side.to_target(x, rng),
             to_mesh: side.to_mesh(&self.bvh, rng),
-            hard_to_target: self.hard.to_target(x, &side, rng),
-            hard_to_mesh: self.hard.to_mesh(x, &self.bvh, &side, rng),
+            hard_to_target: self.hard.match_mesh(x, &side, rng),
+            hard_to_mesh: self.hard.match_target(x, &self.bvh, &side, rng),
         }
     }
 }

@@ -2,8 +2,8 @@
 
 use mesh_core::sampling::TriangleSampler;
 use mesh_core::{
-    Location, Point3, Positions, SurfacePoint, TargetSurface, TriangleBvh, Triangulation,
-    Vector3, VertexData,
+    Location, Point3, Positions, SurfacePoint, TargetSurface, TriangleBvh, Triangulation, Vector3,
+    VertexData,
 };
 use rand::{RngCore, SeedableRng};
 use rand_chacha::ChaCha8Rng;

@@ -106,12 +106,15 @@ impl DrapeConfig {
         self.stages.last().map_or(Weights::ZERO, |s| s.to)
     }
 
-    pub(crate) fn is_stage_start(&self, iteration: usize) -> bool {
-        let mut start = 0;
-        self.stages.iter().any(|stage| {
-            let is_start = iteration == start;
-            start += stage.n_iterations;
-            is_start
-        })
+    /// The iteration at which each stage starts.
+    pub(crate) fn stage_starts(&self) -> Vec<usize> {
+        self.stages
+            .iter()
+            .scan(0, |next, stage| {
+                let start = *next;
+                *next += stage.n_iterations;
+                Some(start)
+            })
+            .collect()
     }
 }

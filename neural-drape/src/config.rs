@@ -32,6 +32,8 @@ pub struct DrapeConfig {
     pub skinny_threshold: f64,
     /// Cosine of the angle between neighbours' normals at which the fold barrier begins, −1..=1.
     pub fold_limit: f64,
+    /// Whether [`crate::Drape::finish`] takes out new folds and new skinny triangles.
+    pub repair: bool,
     /// The run, stage after stage.
     pub stages: Vec<Stage>,
 }
@@ -185,8 +187,6 @@ pub struct Weights {
     pub conformal: f64,
     /// [`mesh_loss::LocalShape`]
     pub local_shape: f64,
-    /// [`mesh_loss::Smoothness`]
-    pub smoothness: f64,
     /// [`mesh_loss::Drift`], from where each stage starts
     pub drift: f64,
 }
@@ -205,7 +205,6 @@ impl Weights {
         fold_barrier: 0.0,
         conformal: 0.0,
         local_shape: 0.0,
-        smoothness: 0.0,
         drift: 0.0,
     };
 
@@ -223,7 +222,6 @@ impl Weights {
             fold_barrier: mix(a.fold_barrier, b.fold_barrier),
             conformal: mix(a.conformal, b.conformal),
             local_shape: mix(a.local_shape, b.local_shape),
-            smoothness: mix(a.smoothness, b.smoothness),
             drift: mix(a.drift, b.drift),
         }
     }

@@ -4,8 +4,8 @@ use mesh_core::{
     Landmark, Positions, TargetSurface, Triangulation, UnitFrame, Vector3, VertexData,
 };
 use mesh_loss::{
-    AreaKl, Beyond, Chamfer, Conformal, CornerAngle, Drift, Flip, FoldBarrier, LandmarkDistance,
-    LocalShape, Loss, Matches, NormalAgreement, Overlap, Smoothness, SurfaceMatcher,
+    AreaKl, Beyond, Chamfer, Conformal, CornerAngle, Drift, Flip, FoldBarrier, HardCorners,
+    LandmarkDistance, LocalShape, Loss, Matches, NormalAgreement, Overlap, SurfaceMatcher,
     TriangleQuality, WorstDistance,
 };
 use rand::SeedableRng;
@@ -17,7 +17,7 @@ use crate::config::{
 use crate::coverage::{area_share, uncovered};
 use crate::network::{Network, NetworkMap};
 use crate::regions::{Guidance, Regions};
-use crate::{DrapeError, DrapeState, Parametrization, Vertices};
+use crate::{DrapeError, DrapeState, Parametrization, Repair, Vertices};
 
 /// Random places on each shape that tell how far it reaches beyond the other.
 const N_BEYOND: usize = 4000;
@@ -82,6 +82,7 @@ pub struct Drape<'a> {
     guidance: Guidance,
     iteration: usize,
     n_iterations: usize,
+    stage_starts: Vec<usize>,
     gradient: VertexData<Vector3>,
     rng: ChaCha8Rng,
 }
@@ -95,9 +96,7 @@ struct Structure<'a> {
     fold_barrier: FoldBarrier<'a>,
     conformal: Conformal<'a>,
     local_shape: LocalShape,
-    smoothness: Smoothness,
     drift: Drift,
-    triangulation: &'a Triangulation,
 }
 
 impl<'a> Drape<'a> {
@@ -143,6 +142,7 @@ impl<'a> Drape<'a> {
             matcher,
             structure: Structure::new(&input, &initial, &config),
             iteration: 0,
+            stage_starts: config.stage_starts(),
             n_iterations: config.stages.iter().map(|s| s.n_iterations).sum(),
             gradient: VertexData::new(initial.len(), Vector3::zeros()),
             rng,
@@ -167,9 +167,9 @@ impl<'a> Drape<'a> {
             .at(self.iteration, self.n_iterations);
         let progress = self.iteration as f64 / self.n_iterations as f64;
         self.parametrization.set_progress(progress)?;
-        if self.config.is_stage_start(self.iteration) {
+        if self.stage_starts.contains(&self.iteration) {
             let x = self.parametrization.positions();
-            self.structure.drift = Drift::new(self.structure.triangulation, x);
+            self.structure.anchor(self.input.triangulation, x);
         }
 
         let sampling = self.config.sampling.at(self.iteration, self.overlap);
@@ -234,6 +234,23 @@ impl<'a> Drape<'a> {
         Ok(())
     }
 
+    /// The result: the positions, without the new folds and new skinny triangles that can be taken out if the settings
+    /// ask for it ([`crate::repair`]). The drape stays as it is and can go on.
+    pub fn finish(&self) -> Repair {
+        let positions = self.positions();
+        if self.config.repair {
+            crate::repair(self.input.triangulation, self.input.rest, &positions)
+        } else {
+            let defects =
+                crate::repair::defects(self.input.triangulation, self.input.rest, &positions);
+            Repair {
+                positions,
+                left: defects.clone(),
+                before: defects,
+            }
+        }
+    }
+
     /// Replaces the landmarks from the next step on.
     ///
     /// # Errors
@@ -284,10 +301,13 @@ impl<'a> Drape<'a> {
         let scale = self.frame.scale;
         self.parametrization
             .displace(&displacements.map(|d| d / scale));
+        let x = self.parametrization.positions();
+        self.structure.anchor(self.input.triangulation, x);
         Ok(())
     }
 
-    /// Adds iterations to the run, with the weights that it would have ended with.
+    /// Adds iterations to the run, with the weights that it would have ended with; vertices stay anchored where they
+    /// were.
     pub fn extend(&mut self, n_iterations: usize) {
         if let Some(&Stage { to, .. }) = self.config.stages.last() {
             self.config.stages.push(Stage {
@@ -305,6 +325,10 @@ impl<'a> Drape<'a> {
             state.count(self.iteration);
             state.count(self.n_iterations);
             state.word_position(self.rng.get_word_pos());
+            let hard = self.matcher.hard_corners();
+            state.counts(&hard.of_mesh);
+            state.counts(&hard.of_target);
+            state.points(self.structure.drift.reference());
             self.parametrization.save(state);
         })
     }
@@ -322,6 +346,16 @@ impl<'a> Drape<'a> {
         self.extend(n_iterations - self.n_iterations);
         self.iteration = iteration;
         self.rng.set_word_pos(reader.word_position()?);
+        let hard = HardCorners {
+            of_mesh: reader.counts()?,
+            of_target: reader.counts()?,
+        };
+        if !self.matcher.set_hard_corners(hard) {
+            return Err(DrapeError::ForeignState);
+        }
+        let mut anchor = self.structure.drift.reference().clone();
+        reader.points(anchor.iter_mut())?;
+        self.structure.anchor(self.input.triangulation, &anchor);
         self.parametrization.restore(&mut reader)?;
         reader.finish()
     }
@@ -394,7 +428,7 @@ impl<'a> Drape<'a> {
     /// Eq. 3 and its companions.
     fn add_structural_terms(&mut self, w: &Weights) -> Vec<TermReport> {
         let s = &self.structure;
-        let terms: [Term<'_>; 9] = [
+        let terms: [Term<'_>; 8] = [
             ("angles", w.corner_angle, &s.corner_angle),
             ("areas", w.area_kl, &s.area_kl),
             ("skinny", w.triangle_quality, &s.triangle_quality),
@@ -402,7 +436,6 @@ impl<'a> Drape<'a> {
             ("folds", w.fold_barrier, &s.fold_barrier),
             ("conformal", w.conformal, &s.conformal),
             ("local shape", w.local_shape, &s.local_shape),
-            ("smoothness", w.smoothness, &s.smoothness),
             ("drift", w.drift, &s.drift),
         ];
         accumulate(&terms, self.parametrization.positions(), &mut self.gradient)
@@ -446,9 +479,7 @@ impl<'a> Structure<'a> {
             fold_barrier: FoldBarrier::new(t, input.rest, config.fold_limit),
             conformal: Conformal::new(t, input.rest),
             local_shape: LocalShape::new(t, input.rest),
-            smoothness: Smoothness::new(t, initial),
             drift: Drift::new(t, initial),
-            triangulation: t,
         }
     }
 }
@@ -474,6 +505,13 @@ fn lacking(
     let share = area_share(input.triangulation, initial, &lacking);
     beyond.of_mesh = beyond.of_mesh.max(share);
     lacking
+}
+
+impl Structure<'_> {
+    /// From here on, `x` is where vertices should not slide away from.
+    fn anchor(&mut self, triangulation: &Triangulation, x: &Positions) {
+        self.drift = Drift::new(triangulation, x);
+    }
 }
 
 fn overlap(mode: OverlapMode, beyond: &Beyond) -> Overlap {

@@ -6,6 +6,7 @@
 //! | drape | [`Drape::new`], [`Drape::step`], [`Drape::positions`] |
 //! | keep parts of the source free or rigid | [`Regions`], [`Drape::set_regions`] |
 //! | choose how | [`DrapeConfig`] and its presets |
+//! | take out folds and skinny triangles at the end | [`Drape::finish`], [`repair`] |
 //! | go on with other landmarks | [`Drape::set_landmarks`], [`Drape::displace`], [`Drape::extend`] |
 //! | keep a drape in progress | [`Drape::state`], [`Drape::restore`] |
 //! | do to other points what was done to the source | [`Warp::new`], [`Warp::apply`] |
@@ -19,6 +20,7 @@ pub mod network;
 mod parametrization;
 mod presets;
 mod regions;
+mod repair;
 mod state;
 mod vertices;
 mod warp;
@@ -31,6 +33,7 @@ pub use drape::{Drape, DrapeInput, StepReport, TermReport};
 pub use error::DrapeError;
 pub use parametrization::Parametrization;
 pub use regions::Regions;
+pub use repair::{repair, Defects, Repair};
 pub use state::{DrapeState, StateReader, StateWriter};
 pub use vertices::{Vertices, VerticesConfig};
 pub use warp::{Warp, WarpError, WarpInput};

@@ -59,6 +59,7 @@ impl DrapeConfig {
             worst_tolerance: 0.006,
             skinny_threshold: 0.2,
             fold_limit: 0.3,
+            repair: true,
             stages: standard_stages(),
         }
     }
@@ -127,6 +128,7 @@ impl DrapeConfig {
             worst_tolerance: 0.0,
             skinny_threshold: 0.1,
             fold_limit: 0.3,
+            repair: false,
             stages: vec![constant(1000, first), constant(500, second)],
         }
     }

@@ -49,6 +49,12 @@ impl StateWriter {
         self.bytes.extend((n as u64).to_le_bytes());
     }
 
+    /// Whole numbers and how many they are.
+    pub fn counts(&mut self, entries: &[usize]) {
+        self.count(entries.len());
+        entries.iter().for_each(|&n| self.count(n));
+    }
+
     /// A position in a stream of random words.
     pub fn word_position(&mut self, n: u128) {
         self.bytes.extend(n.to_le_bytes());
@@ -113,6 +119,18 @@ impl StateReader<'_> {
     pub fn count(&mut self) -> Result<usize, DrapeError> {
         let n = u64::from_le_bytes(self.take()?);
         usize::try_from(n).map_err(|_| DrapeError::ForeignState)
+    }
+
+    /// What [`StateWriter::counts`] wrote.
+    ///
+    /// # Errors
+    /// See [`Self::count`].
+    pub fn counts(&mut self) -> Result<Vec<usize>, DrapeError> {
+        let n = self.count()?;
+        if n > self.rest.len() / size_of::<u64>() {
+            return Err(DrapeError::ForeignState);
+        }
+        (0..n).map(|_| self.count()).collect()
     }
 
     /// What [`StateWriter::word_position`] wrote.

@@ -25,7 +25,7 @@ pub struct VerticesConfig {
 }
 
 impl VerticesConfig {
-    /// From a tenth of the shape to a fiftieth; small faces, whose gradients are small, catch up in the last third.
+    /// From a tenth of the shape to a seventieth; small faces, whose gradients are small, catch up in the last third.
     pub const fn standard() -> Self {
         Self {
             smoothing_start: 0.1,

@@ -5,8 +5,8 @@ use mesh_core::{
     UnitFrame, Vector3, VertexData, VertexId,
 };
 use mesh_loss::{
-    AreaKl, Chamfer, Conformal, CornerAngle, Flip, FoldBarrier, LandmarkDistance, LocalShape, Loss,
-    Matches, NormalAgreement, SamplingConfig, Smoothness, SurfaceMatcher, TriangleQuality,
+    AreaKl, Chamfer, Conformal, CornerAngle, Drift, Flip, FoldBarrier, LandmarkDistance,
+    LocalShape, Loss, Matches, NormalAgreement, SamplingConfig, SurfaceMatcher, TriangleQuality,
     WorstDistance,
 };
 use proptest::prelude::*;
@@ -120,7 +120,7 @@ proptest! {
             &Flip::new(t, &s.rest),
             &FoldBarrier::new(t, &s.rest, 0.95),
             &Conformal::new(t, &s.rest),
-            &Smoothness::new(t, &s.rest),
+            &Drift::new(t, &s.rest),
             &LocalShape::new(t, &s.rest),
         ];
         for term in terms {

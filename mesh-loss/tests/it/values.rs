@@ -2,8 +2,8 @@
 
 use mesh_core::{shapes, Point3, Positions, TriangleSoup, Vector3, VertexData};
 use mesh_loss::{
-    AreaKl, Chamfer, Conformal, CornerAngle, Flip, FoldBarrier, LocalShape, Loss, SamplingConfig,
-    Smoothness, SurfaceMatcher, TriangleQuality, WorstDistance,
+    AreaKl, Chamfer, Conformal, CornerAngle, Drift, Flip, FoldBarrier, LocalShape, Loss,
+    SamplingConfig, SurfaceMatcher, TriangleQuality, WorstDistance,
 };
 use proptest::prelude::*;
 
@@ -30,7 +30,7 @@ fn structural_terms_and_their_gradients_vanish_at_rest() {
             &Flip::new(t, &s.rest),
             &FoldBarrier::new(t, &s.rest, 0.3),
             &Conformal::new(t, &s.rest),
-            &Smoothness::new(t, &s.rest),
+            &Drift::new(t, &s.rest),
             &LocalShape::new(t, &s.rest),
         ];
         for (row, term) in terms.into_iter().enumerate() {

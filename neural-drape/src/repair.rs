@@ -1,0 +1,303 @@
+//! The last stage: no new fold, no new skinny triangle.
+
+use mesh_core::measure::{triangle_normal, triangle_quality};
+use mesh_core::{Aabb, Positions, Triangulation, TriangulationEdge, Vector3, VertexId};
+use mesh_loss::LocalShape;
+
+/// An edge is folded when the normals of its triangles have a dot product below this.
+const FOLD_COSINE: f64 = -0.5;
+/// A triangle with Q_f (Eq. 4) below this is skinny.
+const SKINNY_QUALITY: f64 = 0.1;
+/// A patch grows up to this many rings around what is broken.
+const MAX_RINGS: usize = 4;
+/// Each size of a patch is relaxed at most this often.
+const SWEEPS: usize = 12;
+/// A patch is left as it was if mending it would move a vertex farther than this share of the longest side.
+const MAX_MOTION: f64 = 0.015;
+
+/// A result without what the drape broke, as far as that is possible.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Repair {
+    /// Where the vertices are, in the coordinates of the input.
+    pub positions: Positions,
+    /// What was broken before.
+    pub before: Defects,
+    /// What is still broken.
+    pub left: Defects,
+}
+
+/// What is broken in a mesh that was not at rest.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Defects {
+    /// Ends of the edges whose triangles turn against each other, n₁·n₂ < −0.5.
+    pub folds: Vec<[VertexId; 2]>,
+    /// Rows of the triangles with Q_f < 0.1.
+    pub skinny: Vec<usize>,
+}
+
+impl Defects {
+    /// Whether nothing is broken.
+    pub fn is_empty(&self) -> bool {
+        self.folds.is_empty() && self.skinny.is_empty()
+    }
+}
+
+/// Relaxes small patches around new folds and new skinny triangles towards the shape they had at rest, turned and
+/// scaled, with their surroundings held ([`LocalShape::relax`]); a patch grows until nothing in it is broken.
+///
+/// A quad is looked at along both diagonals, since another program may split it along either. A patch that does not get
+/// better by a small motion stays as it was. All else stays, to the bit.
+pub fn repair(triangulation: &Triangulation, rest: &Positions, x: &Positions) -> Repair {
+    let judge = Judge::new(triangulation, rest);
+    let before = judge.defects(x);
+    let mut positions = x.clone();
+    let mut broken = judge.broken_vertices(x);
+    if !broken.is_empty() {
+        let shape = LocalShape::new(triangulation, rest);
+        let neighbours = Neighbours::new(triangulation, x.len());
+        let reach = MAX_MOTION * Aabb::of(x).longest_side();
+        for patch in neighbours.connected(&broken) {
+            let mended = (0..=MAX_RINGS).find_map(|rings| {
+                let free = neighbours.grown(&patch, rings);
+                let mut candidate = positions.clone();
+                (0..SWEEPS).find_map(|_| {
+                    shape.relax(&mut candidate, &free);
+                    let left = judge.broken_vertices(&candidate);
+                    is_mended(&left, &broken, &patch).then(|| (candidate.clone(), left))
+                })
+            });
+            let is_small = |moved: &Positions| farthest_motion(&positions, moved) <= reach;
+            if let Some((candidate, left)) = mended.filter(|(moved, _)| is_small(moved)) {
+                (positions, broken) = (candidate, left);
+            }
+        }
+    }
+    Repair {
+        left: judge.defects(&positions),
+        before,
+        positions,
+    }
+}
+
+/// How far the vertex that moved farthest went.
+fn farthest_motion(from: &Positions, to: &Positions) -> f64 {
+    from.iter()
+        .zip(to)
+        .map(|(p, q)| (q - p).norm())
+        .fold(0.0, f64::max)
+}
+
+/// What is broken at `x` that was not at rest.
+pub(crate) fn defects(triangulation: &Triangulation, rest: &Positions, x: &Positions) -> Defects {
+    Judge::new(triangulation, rest).defects(x)
+}
+
+/// Nothing in the patch is broken any more, and nothing else is that was not.
+fn is_mended(left: &[VertexId], broken: &[VertexId], patch: &[VertexId]) -> bool {
+    left.iter()
+        .all(|v| !patch.contains(v) && broken.contains(v))
+}
+
+/// Tells what is broken, along one diagonal of each quad and along the other.
+struct Judge<'a> {
+    rest: &'a Positions,
+    splits: [Split; 2],
+}
+
+struct Split {
+    triangulation: Triangulation,
+    /// Those that are not folded at rest.
+    edges: Vec<TriangulationEdge>,
+}
+
+impl<'a> Judge<'a> {
+    fn new(triangulation: &Triangulation, rest: &'a Positions) -> Self {
+        let splits = [triangulation.clone(), triangulation.flipped()].map(|triangulation| {
+            let normals = normals(&triangulation, rest);
+            let mut edges = triangulation.interior_edges();
+            edges.retain(|e| !is_folded(e, &normals));
+            Split {
+                triangulation,
+                edges,
+            }
+        });
+        Self { rest, splits }
+    }
+
+    /// Along the triangulation's own diagonals.
+    fn defects(&self, x: &Positions) -> Defects {
+        let [own, _] = &self.splits;
+        Defects {
+            folds: own.folds(x).map(|e| e.vertices).collect(),
+            skinny: own.skinny(self.rest, x).collect(),
+        }
+    }
+
+    /// Corners of all that is broken along either diagonal, in order.
+    fn broken_vertices(&self, x: &Positions) -> Vec<VertexId> {
+        let mut vertices = Vec::new();
+        for split in &self.splits {
+            let triangles = split.triangulation.triangles();
+            let of_folds = split.folds(x).flat_map(|e| e.triangles).collect::<Vec<_>>();
+            let rows = of_folds.into_iter().chain(split.skinny(self.rest, x));
+            vertices.extend(rows.flat_map(|t| triangles[t]));
+        }
+        vertices.sort_unstable();
+        vertices.dedup();
+        vertices
+    }
+}
+
+impl Split {
+    fn folds(&self, x: &Positions) -> impl Iterator<Item = &TriangulationEdge> {
+        let normals = normals(&self.triangulation, x);
+        self.edges.iter().filter(move |e| is_folded(e, &normals))
+    }
+
+    fn skinny<'s>(
+        &'s self,
+        rest: &'s Positions,
+        x: &'s Positions,
+    ) -> impl Iterator<Item = usize> + 's {
+        let pairs = self
+            .triangulation
+            .corners(rest)
+            .zip(self.triangulation.corners(x));
+        let is_skinny = |corners| triangle_quality(corners) < SKINNY_QUALITY;
+        pairs
+            .enumerate()
+            .filter(move |&(_, (before, after))| is_skinny(after) && !is_skinny(before))
+            .map(|(t, _)| t)
+    }
+}
+
+fn normals(triangulation: &Triangulation, x: &Positions) -> Vec<Vector3> {
+    triangulation
+        .corners(x)
+        .map(|corners| triangle_normal(corners).unwrap_or_default())
+        .collect()
+}
+
+fn is_folded(edge: &TriangulationEdge, normals: &[Vector3]) -> bool {
+    let [one, two] = edge.triangles.map(|t| normals[t]);
+    one.dot(&two) < FOLD_COSINE
+}
+
+/// The one-rings of a mesh.
+struct Neighbours {
+    starts: Vec<usize>,
+    rows: Vec<VertexId>,
+}
+
+impl Neighbours {
+    fn new(triangulation: &Triangulation, n_vertices: usize) -> Self {
+        let edges = triangulation.edges();
+        let mut sides: Vec<[VertexId; 2]> =
+            edges.iter().flat_map(|&[a, b]| [[a, b], [b, a]]).collect();
+        sides.sort_unstable();
+        let first = |i: usize| sides.partition_point(|side| side[0].index() < i);
+        Self {
+            starts: (0..=n_vertices).map(first).collect(),
+            rows: sides.iter().map(|side| side[1]).collect(),
+        }
+    }
+
+    fn of(&self, v: VertexId) -> &[VertexId] {
+        &self.rows[self.starts[v.index()]..self.starts[v.index() + 1]]
+    }
+
+    /// The vertices within `rings` edges of `patch`, in order.
+    fn grown(&self, patch: &[VertexId], rings: usize) -> Vec<VertexId> {
+        let mut grown = patch.to_vec();
+        for _ in 0..rings {
+            let around: Vec<VertexId> = grown.iter().flat_map(|&v| self.of(v)).copied().collect();
+            grown.extend(around);
+            grown.sort_unstable();
+            grown.dedup();
+        }
+        grown
+    }
+
+    /// The connected parts of `vertices`, each in order.
+    fn connected(&self, vertices: &[VertexId]) -> Vec<Vec<VertexId>> {
+        let mut rest: Vec<VertexId> = vertices.to_vec();
+        let mut parts = Vec::new();
+        while let Some(&seed) = rest.first() {
+            let mut part = vec![seed];
+            loop {
+                let mut larger = self.grown(&part, 1);
+                larger.retain(|v| rest.binary_search(v).is_ok());
+                if larger.len() == part.len() {
+                    break;
+                }
+                part = larger;
+            }
+            rest.retain(|v| part.binary_search(v).is_err());
+            parts.push(part);
+        }
+        parts
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use mesh_core::shapes;
+
+    use super::*;
+
+    fn sphere() -> (Triangulation, Positions) {
+        let (mesh, rest) = shapes::quad_sphere(8).into_halfedge().unwrap();
+        (Triangulation::new(&mesh, &rest), rest)
+    }
+
+    #[test]
+    fn a_shape_without_defects_stays_to_the_bit() {
+        let (triangulation, rest) = sphere();
+        let x = rest.map(|p| p * 3.0);
+        let repair = repair(&triangulation, &rest, &x);
+        assert_eq!(repair.positions, x);
+        assert!(repair.before.is_empty() && repair.left.is_empty());
+    }
+
+    #[test]
+    fn a_vertex_thrown_over_its_neighbours_comes_back() {
+        let (triangulation, rest) = sphere();
+        let mut x = rest.map(|p| p * 2.0);
+        let (v, w) = (VertexId::new(40), VertexId::new(200));
+        let [a, b] = [v, w].map(|v| triangulation.edges().iter().find(|e| e[0] == v).unwrap()[1]);
+        x[v] = x[v] + (x[a] - x[v]) * 2.5;
+        x[w] = x[w] + (x[b] - x[w]) * 2.5;
+        let repair = repair(&triangulation, &rest, &x);
+        assert!(!repair.before.is_empty());
+        assert!(repair.left.is_empty(), "{:?}", repair.left);
+        let true_place = rest.map(|p| p * 2.0);
+        assert!((repair.positions[v] - true_place[v]).norm() < 0.05);
+        let moved = (0..x.len()).filter(|&i| repair.positions.as_slice()[i] != x.as_slice()[i]);
+        assert!(moved.count() < x.len() / 2);
+    }
+
+    #[test]
+    fn both_diagonals_of_a_quad_are_seen() {
+        let (triangulation, rest) = sphere();
+        let flipped = triangulation.flipped();
+        assert_eq!(flipped.len(), triangulation.len());
+        let sorted = |t: &Triangulation| -> Vec<_> {
+            let corners = t.triangles().iter().map(|t| {
+                let mut t = *t;
+                t.sort_unstable();
+                t
+            });
+            let mut all: Vec<_> = corners.collect();
+            all.sort_unstable();
+            all
+        };
+        assert_ne!(sorted(&flipped), sorted(&triangulation));
+        assert_eq!(sorted(&flipped.flipped()), sorted(&triangulation));
+        let area = |t: &Triangulation| {
+            mesh_core::measure::triangle_areas(t, &rest)
+                .iter()
+                .sum::<f64>()
+        };
+        assert!((area(&flipped) - area(&triangulation)).abs() < 0.05 * area(&triangulation));
+    }
+}
