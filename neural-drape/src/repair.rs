@@ -13,7 +13,7 @@ const MAX_RINGS: usize = 4;
 /// Each size of a patch is relaxed at most this often.
 const SWEEPS: usize = 12;
 /// A patch is left as it was if mending it would move a vertex farther than this share of the longest side.
-const MAX_MOTION: f64 = 0.015;
+const MAX_MOTION: f64 = 0.03;
 
 /// A result without what the drape broke, as far as that is possible.
 #[derive(Clone, Debug, PartialEq)]
@@ -245,14 +245,14 @@ mod tests {
 
     use super::*;
 
-    fn sphere() -> (Triangulation, Positions) {
-        let (mesh, rest) = shapes::quad_sphere(8).into_halfedge().unwrap();
+    fn sphere(n: usize) -> (Triangulation, Positions) {
+        let (mesh, rest) = shapes::quad_sphere(n).into_halfedge().unwrap();
         (Triangulation::new(&mesh, &rest), rest)
     }
 
     #[test]
     fn a_shape_without_defects_stays_to_the_bit() {
-        let (triangulation, rest) = sphere();
+        let (triangulation, rest) = sphere(8);
         let x = rest.map(|p| p * 3.0);
         let repair = repair(&triangulation, &rest, &x);
         assert_eq!(repair.positions, x);
@@ -261,24 +261,24 @@ mod tests {
 
     #[test]
     fn a_vertex_thrown_over_its_neighbours_comes_back() {
-        let (triangulation, rest) = sphere();
+        let (triangulation, rest) = sphere(48);
         let mut x = rest.map(|p| p * 2.0);
-        let (v, w) = (VertexId::new(40), VertexId::new(200));
+        let (v, w) = (VertexId::new(1040), VertexId::new(5200));
         let [a, b] = [v, w].map(|v| triangulation.edges().iter().find(|e| e[0] == v).unwrap()[1]);
-        x[v] = x[v] + (x[a] - x[v]) * 2.5;
-        x[w] = x[w] + (x[b] - x[w]) * 2.5;
+        x[v] = x[v] + (x[a] - x[v]) * 1.6;
+        x[w] = x[w] + (x[b] - x[w]) * 1.6;
         let repair = repair(&triangulation, &rest, &x);
         assert!(!repair.before.is_empty());
         assert!(repair.left.is_empty(), "{:?}", repair.left);
         let true_place = rest.map(|p| p * 2.0);
-        assert!((repair.positions[v] - true_place[v]).norm() < 0.05);
+        assert!((repair.positions[v] - true_place[v]).norm() < 0.02);
         let moved = (0..x.len()).filter(|&i| repair.positions.as_slice()[i] != x.as_slice()[i]);
         assert!(moved.count() < x.len() / 2);
     }
 
     #[test]
     fn both_diagonals_of_a_quad_are_seen() {
-        let (triangulation, rest) = sphere();
+        let (triangulation, rest) = sphere(8);
         let flipped = triangulation.flipped();
         assert_eq!(flipped.len(), triangulation.len());
         let sorted = |t: &Triangulation| -> Vec<_> {
