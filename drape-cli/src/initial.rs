@@ -21,10 +21,10 @@ pub(crate) enum Start {
 impl Start {
     /// The start that belongs to a preset.
     pub(crate) fn of_preset(preset: &str) -> Self {
-        if preset == "paper" {
-            Self::Paper
-        } else {
-            Self::Standard
+        match preset {
+            "paper" => Self::Paper,
+            "study-affine-start" => Self::Affine,
+            _ => Self::Standard,
         }
     }
 }

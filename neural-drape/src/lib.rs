@@ -22,6 +22,7 @@ mod presets;
 mod regions;
 mod repair;
 mod state;
+mod studies;
 mod vertices;
 mod warp;
 

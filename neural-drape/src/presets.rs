@@ -16,7 +16,7 @@ impl DrapeConfig {
     /// The names that [`Self::named`] knows, the default first.
     pub const PRESETS: [&'static str; 3] = ["standard", "network", "paper"];
 
-    /// The preset of this name.
+    /// The preset of this name, or the study ([`Self::studies`]).
     ///
     /// # Errors
     /// There is no such preset.
@@ -25,7 +25,7 @@ impl DrapeConfig {
             "standard" => Ok(Self::standard()),
             "network" => Ok(Self::network()),
             "paper" => Ok(Self::paper()),
-            _ => Err(DrapeError::UnknownPreset {
+            _ => Self::study(name).ok_or_else(|| DrapeError::UnknownPreset {
                 name: name.to_owned(),
                 known: Self::PRESETS.join(", "),
             }),

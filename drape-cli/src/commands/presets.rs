@@ -15,7 +15,12 @@ pub(crate) struct Args {
 
 pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
     match &args.name {
-        None => say(&format!("{}\n", DrapeConfig::PRESETS.join("\n")))?,
+        None => {
+            let names = DrapeConfig::PRESETS
+                .into_iter()
+                .chain(DrapeConfig::studies());
+            say(&names.map(|name| format!("{name}\n")).collect::<String>())?;
+        }
         Some(name) => {
             let settings = SettingsArgs {
                 preset: Some(name.clone()),
