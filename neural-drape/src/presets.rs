@@ -158,8 +158,8 @@ fn standard_stages() -> Vec<Stage> {
         ..start
     };
     let end = Weights {
-        worst_distance: 1.8 * AUTHORS_SIDE,
-        landmark: 35.0 * AUTHORS_SIDE * AUTHORS_SIDE,
+        worst_distance: 2.4 * AUTHORS_SIDE,
+        landmark: 45.0 * AUTHORS_SIDE * AUTHORS_SIDE,
         drift: 4.0 * AUTHORS_SIDE * AUTHORS_SIDE,
         triangle_quality: 0.5,
         fold_barrier: 10.0,
