@@ -58,8 +58,8 @@ impl LocalShape {
 }
 
 impl LocalShape {
-    /// Moves each vertex of `free` once to where its edges would have it, in their order:
-    /// `xᵢ ← Σⱼ wᵢⱼ (xⱼ + ½ (sᵢRᵢ + sⱼRⱼ)(rᵢ − rⱼ)) / Σⱼ wᵢⱼ`, with the best frames sR of the one-rings.
+    /// Moves each vertex of `free` once, in their order, half the way to where its edges would have it:
+    /// `Σⱼ wᵢⱼ (xⱼ + ½ (sᵢRᵢ + sⱼRⱼ)(rᵢ − rⱼ)) / Σⱼ wᵢⱼ`, with the best frames sR of the one-rings.
     ///
     /// Repeated, it undoes folds of a small patch from its surroundings inwards. Vertices without an edge stay.
     pub fn relax(&self, x: &mut Positions, free: &[VertexId]) {
@@ -74,7 +74,7 @@ impl LocalShape {
                 total += self.weights[k];
             }
             if total > 0.0 {
-                x[v] = (sum / total).into();
+                x[v] = nalgebra::center(&x[v], &(sum / total).into());
             }
         }
     }
