@@ -25,8 +25,8 @@ const N_BEYOND: usize = 4000;
 const FAR_BEYOND: f64 = 0.03;
 /// A shape of which less than this share lies beyond is taken as whole.
 const LEAST_BEYOND: f64 = 0.05;
-/// Pieces that follow the space around them do so every this many iterations, and at the end.
-const CARRY_EVERY: usize = 100;
+/// Parts that nothing attracts follow the rest every this many iterations, and at the end.
+const CARRY_EVERY: usize = 200;
 
 /// What is draped over what.
 #[derive(Clone, Copy)]
@@ -228,7 +228,10 @@ impl<'a> Drape<'a> {
         let is_last = self.iteration == self.n_iterations;
         let with_pieces = is_last || self.iteration.is_multiple_of(CARRY_EVERY);
         let x = self.parametrization.positions();
-        if let Some(moves) = self.guidance.correction(x, with_pieces)? {
+        if let Some(moves) = self
+            .guidance
+            .correction(self.input.triangulation, x, with_pieces)?
+        {
             self.parametrization.displace(&moves);
         }
         Ok(())

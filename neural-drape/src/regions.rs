@@ -3,7 +3,9 @@
 use mesh_core::measure::triangle_normal;
 use mesh_core::{Positions, TriangleBvh, Triangulation, Vector3, VertexData, VertexId};
 use mesh_loss::{Matches, SurfaceMatch};
-use mesh_operators::SpaceExtension;
+use mesh_operators::{
+    bilaplacian, cotan_laplacian, voronoi_mass, FixedSolve, FixedSolveScratch, SpaceExtension,
+};
 use nalgebra::Matrix3;
 
 use crate::DrapeError;
@@ -60,6 +62,8 @@ impl Regions {
     }
 }
 
+/// A vertex with fewer pairs than this share of what its area makes expect has no counterpart for now.
+const FEW_PAIRS: f64 = 0.2;
 /// With a target that is only a part, a sample of the mesh counts if the way to the target and back ends no farther from
 /// it than this share of the way there, and a hundredth of the longest side.
 const MUTUAL: f64 = 0.7;
@@ -75,6 +79,8 @@ pub(crate) struct Guidance {
     led: Vec<VertexId>,
     initial: Positions,
     is_trivial: bool,
+    /// Weight of the pairs of each vertex since pieces were last carried.
+    pairs: VertexData<f64>,
     /// The mesh where it was last asked for mutual pairs.
     bvh: Option<TriangleBvh>,
 }
@@ -135,6 +141,7 @@ impl Guidance {
             carried,
             led,
             initial: initial.clone(),
+            pairs: VertexData::new(n, 0.0),
             bvh: None,
         }
     }
@@ -176,22 +183,37 @@ impl Guidance {
                 way.retain(|m| m.weight > LEAST_ATTRACTION);
             }
         }
+        if target_is_part || !self.is_trivial {
+            for m in matches.to_target.iter().chain(&matches.to_mesh) {
+                for (&v, w) in m.triangle.iter().zip(m.barycentric) {
+                    self.pairs[v] += w;
+                }
+            }
+        }
         matches
     }
 
     /// What each vertex of a body or a carried piece must move by to be where it belongs; none where nothing must.
     ///
-    /// `with_pieces` also moves the pieces that follow the space around them, which takes a dense solve.
+    /// `with_pieces` also moves what has no pairs: connected parts with the smoothest displacement from the initial shape,
+    /// pieces with the space around them. Both take a solve.
     pub(crate) fn correction(
-        &self,
+        &mut self,
+        triangulation: &Triangulation,
         x: &Positions,
         with_pieces: bool,
     ) -> Result<Option<VertexData<Vector3>>, DrapeError> {
+        let loose = if with_pieces {
+            self.without_pairs(triangulation, x)
+        } else {
+            Vec::new()
+        };
         let carries = with_pieces && !self.carried.is_empty();
-        if self.bodies.is_empty() && !carries {
+        if self.bodies.is_empty() && !carries && loose.is_empty() {
             return Ok(None);
         }
         let mut moved = x.clone();
+        self.follow(triangulation, &loose, &mut moved);
         if carries {
             let points: Vec<_> = self.led.iter().map(|&v| self.initial[v]).collect();
             let moves: Vec<_> = self.led.iter().map(|&v| x[v] - self.initial[v]).collect();
@@ -206,6 +228,53 @@ impl Guidance {
         Ok(Some(
             moved.iter().zip(x.iter()).map(|(a, b)| a - b).collect(),
         ))
+    }
+}
+
+impl Guidance {
+    /// Vertices of connected parts that nothing attracted since this was last asked.
+    fn without_pairs(&mut self, triangulation: &Triangulation, x: &Positions) -> Vec<VertexId> {
+        let total: f64 = self.pairs.iter().sum();
+        if total <= 0.0 {
+            return Vec::new();
+        }
+        let mut area = VertexData::new(x.len(), 0.0);
+        for (t, corners) in triangulation
+            .triangles()
+            .iter()
+            .zip(triangulation.corners(x))
+        {
+            let share = mesh_core::measure::triangle_area(corners) / 3.0;
+            t.iter().for_each(|&v| area[v] += share);
+        }
+        let paired = self.led.iter().filter(|&&v| self.pairs[v] > 0.0);
+        let density = total / paired.map(|&v| area[v]).sum::<f64>().max(f64::MIN_POSITIVE);
+        let is_loose =
+            |v: &VertexId| area[*v] > 0.0 && self.pairs[*v] < FEW_PAIRS * density * area[*v];
+        let loose = self.led.iter().copied().filter(is_loose).collect();
+        self.pairs.iter_mut().for_each(|p| *p = 0.0);
+        loose
+    }
+
+    /// Moves the vertices of `loose` by the smoothest displacement from the initial shape that the others allow; not at
+    /// all where that is not determined.
+    fn follow(&self, triangulation: &Triangulation, loose: &[VertexId], x: &mut Positions) {
+        if loose.is_empty() || loose.len() >= self.led.len() {
+            return;
+        }
+        let mut is_loose = VertexData::new(x.len(), false);
+        loose.iter().for_each(|&v| is_loose[v] = true);
+        let held: Vec<VertexId> = x.ids().filter(|&v| !is_loose[v]).collect();
+        let mass = voronoi_mass(triangulation, &self.initial);
+        let energy = bilaplacian(&cotan_laplacian(triangulation, &self.initial), &mass);
+        let Ok(solve) = FixedSolve::new(&energy, &held) else {
+            return;
+        };
+        let mut moves: Vec<Vector3> = x.iter().zip(&self.initial).map(|(a, b)| a - b).collect();
+        solve.solve_in_place(&mut moves, &mut FixedSolveScratch::default());
+        for &v in loose {
+            x[v] = self.initial[v] + moves[v.index()];
+        }
     }
 }
 

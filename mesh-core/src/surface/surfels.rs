@@ -7,14 +7,16 @@ use rand::{Rng, RngCore};
 use super::{Location, NormalSign, PointCloud, SurfacePoint, SurfaceSample, TargetSurface};
 use crate::{Aabb, Point3, Vector3};
 
-/// Radius of a disc as a share of the mean distance to the neighbours: so far a cloud's points stand for its surface where it is flat.
+/// Radius of a disc as a share of the mean distance to the neighbours: so far a cloud's points stand for its surface.
 const RADIUS: f64 = 0.7;
+/// Half the thickness of the band around a disc whose neighbours fill space, likewise.
+const BAND: f64 = 0.5;
 
 /// A cloud whose points are discs across their normals, with the area that the spacing of the points gives them.
 ///
 /// Closest points lie between the points of the cloud, and samples are uniform by area however uneven the cloud. The
 /// disc of the nearest point is asked, not every disc. Where neighbours do not lie flat, as on a thin tail of few points,
-/// discs shrink to points.
+/// nobody knows where the surface runs between them: places in a band around the disc count as on it.
 pub struct SurfelCloud {
     cloud: Arc<PointCloud>,
     /// Area up to and including each point.
@@ -37,6 +39,16 @@ impl SurfelCloud {
     }
 }
 
+/// A vector no longer than `most`.
+fn shortened(v: Vector3, most: f64) -> Vector3 {
+    let length = v.norm();
+    if length > most {
+        v * (most / length)
+    } else {
+        v
+    }
+}
+
 impl TargetSurface for SurfelCloud {
     fn closest_point(&self, query: &Point3) -> SurfacePoint {
         let nearest = self.cloud.closest_point(query);
@@ -46,17 +58,13 @@ impl TargetSurface for SurfelCloud {
         let Some(normal) = self.cloud.normal(&nearest.location) else {
             return nearest;
         };
+        let row = index as usize;
+        let (spacing, flatness) = (self.cloud.spacing()[row], self.cloud.flatness()[row]);
         let offset = query - nearest.point;
         let along: Vector3 = offset - normal * normal.dot(&offset);
-        let row = index as usize;
-        let radius = RADIUS * self.cloud.spacing()[row] * self.cloud.flatness()[row];
-        let length = along.norm();
-        let share = if length > radius {
-            radius / length
-        } else {
-            1.0
-        };
-        let point = nearest.point + along * share;
+        let on_disc = nearest.point + shortened(along, RADIUS * spacing);
+        let band = BAND * spacing * (1.0 - flatness);
+        let point = on_disc + shortened(query - on_disc, band);
         SurfacePoint {
             point,
             distance_squared: (query - point).norm_squared(),
