@@ -16,7 +16,7 @@ use crate::config::{
 };
 use crate::coverage::{area_share, uncovered};
 use crate::network::{Network, NetworkMap};
-use crate::regions::{Guidance, Regions};
+use crate::regions::{Follow, Guidance, Regions};
 use crate::{DrapeError, DrapeState, Parametrization, Repair, Vertices};
 
 /// Random places on each shape that tell how far it reaches beyond the other.
@@ -25,8 +25,8 @@ const N_BEYOND: usize = 4000;
 const FAR_BEYOND: f64 = 0.03;
 /// A shape of which less than this share lies beyond is taken as whole.
 const LEAST_BEYOND: f64 = 0.05;
-/// Parts that nothing attracts follow the rest every this many iterations, and at the end.
-const CARRY_EVERY: usize = 200;
+/// So many times in a run, parts that nothing attracts follow the rest.
+const N_FOLLOWS: usize = 5;
 
 /// What is draped over what.
 #[derive(Clone, Copy)]
@@ -225,12 +225,18 @@ impl<'a> Drape<'a> {
 
     /// Puts bodies and carried pieces where they belong.
     fn settle(&mut self) -> Result<(), DrapeError> {
-        let is_last = self.iteration == self.n_iterations;
-        let with_pieces = is_last || self.iteration.is_multiple_of(CARRY_EVERY);
+        let period = (self.n_iterations / N_FOLLOWS).max(1);
+        let follow = if self.iteration >= self.n_iterations {
+            Follow::Pieces
+        } else if self.iteration.is_multiple_of(period) {
+            Follow::All
+        } else {
+            Follow::Bodies
+        };
         let x = self.parametrization.positions();
         if let Some(moves) = self
             .guidance
-            .correction(self.input.triangulation, x, with_pieces)?
+            .correction(self.input.triangulation, x, follow)?
         {
             self.parametrization.displace(&moves);
         }

@@ -85,6 +85,17 @@ pub(crate) struct Guidance {
     bvh: Option<TriangleBvh>,
 }
 
+/// Who follows the rest in one correction.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Follow {
+    /// Rigid bodies take their shape.
+    Bodies,
+    /// Pieces that nothing attracts go with the space around them, too, which takes a solve.
+    Pieces,
+    /// Holes in what is attracted close by the smoothest displacement from the initial shape, too; another solve.
+    All,
+}
+
 /// Vertices that move as one, and their shape about its centre, in the size it starts with.
 struct Body {
     vertices: Vec<VertexId>,
@@ -195,20 +206,18 @@ impl Guidance {
 
     /// What each vertex of a body or a carried piece must move by to be where it belongs; none where nothing must.
     ///
-    /// `with_pieces` also moves what has no pairs: connected parts with the smoothest displacement from the initial shape,
-    /// pieces with the space around them. Both take a solve.
     pub(crate) fn correction(
         &mut self,
         triangulation: &Triangulation,
         x: &Positions,
-        with_pieces: bool,
+        follow: Follow,
     ) -> Result<Option<VertexData<Vector3>>, DrapeError> {
-        let loose = if with_pieces {
+        let loose = if follow == Follow::All {
             self.without_pairs(triangulation, x)
         } else {
             Vec::new()
         };
-        let carries = with_pieces && !self.carried.is_empty();
+        let carries = follow != Follow::Bodies && !self.carried.is_empty();
         if self.bodies.is_empty() && !carries && loose.is_empty() {
             return Ok(None);
         }
@@ -232,7 +241,8 @@ impl Guidance {
 }
 
 impl Guidance {
-    /// Vertices of connected parts that nothing attracted since this was last asked.
+    /// Vertices of connected parts that nothing attracted since this was last asked, with attracted ones all around: a
+    /// part that ends openly, as shoulders do, keeps its shape by structure alone.
     fn without_pairs(&mut self, triangulation: &Triangulation, x: &Positions) -> Vec<VertexId> {
         let total: f64 = self.pairs.iter().sum();
         if total <= 0.0 {
@@ -249,9 +259,15 @@ impl Guidance {
         }
         let paired = self.led.iter().filter(|&&v| self.pairs[v] > 0.0);
         let density = total / paired.map(|&v| area[v]).sum::<f64>().max(f64::MIN_POSITIVE);
-        let is_loose =
-            |v: &VertexId| area[*v] > 0.0 && self.pairs[*v] < FEW_PAIRS * density * area[*v];
-        let loose = self.led.iter().copied().filter(is_loose).collect();
+        let is_loose = |v: VertexId| area[v] > 0.0 && self.pairs[v] < FEW_PAIRS * density * area[v];
+        let mut is_led = VertexData::new(x.len(), false);
+        self.led.iter().for_each(|&v| is_led[v] = true);
+        let is_rim = rim(triangulation, x.len());
+        let loose = groups(triangulation, x.len(), |v| is_led[v] && is_loose(v))
+            .into_iter()
+            .filter(|part| !part.iter().any(|&v| is_rim[v]))
+            .flatten()
+            .collect();
         self.pairs.iter_mut().for_each(|p| *p = 0.0);
         loose
     }
@@ -350,6 +366,22 @@ fn nearest_rotation(from: &[Vector3], to: &[Vector3]) -> Matrix3<f64> {
         u.column_mut(svd.singular_values.imin()).neg_mut();
     }
     u * v_t
+}
+
+/// Which vertices lie on an open boundary.
+fn rim(triangulation: &Triangulation, n: usize) -> VertexData<bool> {
+    let mut is_rim = VertexData::new(n, false);
+    let inner: Vec<_> = triangulation
+        .interior_edges()
+        .iter()
+        .map(|e| e.vertices)
+        .collect();
+    for edge in triangulation.edges() {
+        if inner.binary_search(&edge).is_err() {
+            edge.into_iter().for_each(|v| is_rim[v] = true);
+        }
+    }
+    is_rim
 }
 
 /// Which vertices have a triangle.
