@@ -10,7 +10,7 @@ use crate::{Aabb, Point3, Vector3};
 /// Radius of a disc as a share of the mean distance to the neighbours: so far a cloud's points stand for its surface.
 const RADIUS: f64 = 0.7;
 /// Half the thickness of the band around a disc whose neighbours fill space, likewise.
-const BAND: f64 = 0.35;
+const BAND: f64 = 0.5;
 
 /// A cloud whose points are discs across their normals, with the area that the spacing of the points gives them.
 ///
