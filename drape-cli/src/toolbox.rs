@@ -4,15 +4,16 @@ use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use anyhow::Context as _;
-use drape_studio::{Deformed, Finished, Scene, Settings, TargetParts, Toolbox};
+use drape_studio::{Deformed, Finished, Parts, Scene, Settings, TargetParts, Toolbox};
 use mesh_core::io::MeshFile;
 use mesh_core::Landmark;
-use neural_drape::DrapeConfig;
+use neural_drape::{DrapeConfig, Regions};
 
 use crate::gallery::Gallery;
 use crate::initial::deform;
 use crate::input::{read_target, Pair, Source, Target};
 use crate::landmarks;
+use crate::regions::RegionArgs;
 use crate::render::{Up, View};
 use crate::report::Page;
 use crate::run::{Run, Shapes};
@@ -129,6 +130,14 @@ impl Toolbox for CommandLine {
                 positions: initial.positions,
                 assumed: initial.assumed,
             })
+        })
+    }
+
+    fn regions(&self, scene: &Scene, parts: &Parts) -> anyhow::Result<(Regions, Vec<String>)> {
+        let args = RegionArgs::named(&parts.free, &parts.rigid);
+        self.with_pair(scene, &[], |pair| {
+            let chosen = args.resolve(pair)?;
+            Ok((chosen.regions, chosen.notes))
         })
     }
 

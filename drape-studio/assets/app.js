@@ -96,7 +96,7 @@ class App {
     this.panels.showProgress(this.progress, state.run);
     if (!state.landmarks.some((l) => l.id === this.chosen)) this.chosen = null;
     this.advise();
-    this.invalidate();
+    this.refresh();
   }
 
   setProgress(progress) {
@@ -130,6 +130,7 @@ class App {
       view.shape = new Shape(this.renderer.gl, buffers);
       view.camera.home();
       this.frameView(view);
+      if (side === "source") this.colourParts();
       this.takeFrame();
       this.invalidate();
     } catch (error) {
@@ -141,6 +142,7 @@ class App {
   drop(view) {
     view.shape?.free();
     view.shape = null;
+    this.invalidate(view);
   }
 
   // A shape of the result: four numbers (1, serial, kind, iteration), then positions. Or a heat map: (2, serial,
@@ -159,7 +161,7 @@ class App {
       this.askHeat();
     }
     this.nameViews();
-    this.invalidate();
+    this.invalidate(this.views.result);
   }
 
   // Puts the newest positions into the result's view.
@@ -217,14 +219,14 @@ class App {
 
   choose(id) {
     this.chosen = id;
-    this.invalidate();
+    this.refresh();
   }
 
   // Moves the camera of a view, and the others with it.
   moveCameras(view, change) {
     const moved = this.preferences.linked ? this.views.list : [view];
     moved.forEach((other) => change(other.camera, other));
-    this.invalidate();
+    this.invalidate(...moved);
   }
 
   // Target and result lie in one frame and are seen from one place.
@@ -281,6 +283,39 @@ class App {
     this.invalidate();
   }
 
+  // How each part of the source is draped.
+  setParts(ways) {
+    const key = JSON.stringify(ways);
+    if (this.waysKey === key) return;
+    [this.waysKey, this.ways] = [key, ways];
+    this.colourParts();
+  }
+
+  pointOut(name) {
+    this.pointedOut = name;
+    this.colourParts();
+  }
+
+  // Parts that are not draped like the rest, and the one that is pointed out, have a colour in the source's view.
+  async colourParts() {
+    const { shape } = this.views.source;
+    if (!shape) return;
+    const shown = Object.entries(this.ways ?? {}).filter(([name, way]) => way !== "draped" || name === this.pointedOut);
+    const hash = this.hashes.source;
+    this.partFaces = this.partFaces?.hash === hash ? this.partFaces : { hash, of: new Map() };
+    for (const [name] of shown) {
+      if (!this.partFaces.of.has(name)) this.partFaces.of.set(name, (await this.ask("part_faces", { name })) ?? []);
+    }
+    if (this.hashes.source !== hash) return;
+    const values = new Float32Array(shape.triangles.length / 3).fill(-1);
+    for (const [name, way] of shown) {
+      const value = name === this.pointedOut ? 1 : way === "free" ? 0.25 : 0.75;
+      for (const [from, to] of this.partFaces.of.get(name) ?? []) values.fill(value, from, to);
+    }
+    shape.colour(shown.length > 0 ? values : null, true);
+    this.invalidate(this.views.source);
+  }
+
   setHeat(heat) {
     this.heat = heat;
     this.heatSerial = null;
@@ -323,7 +358,7 @@ class App {
     on("zoom-in", "click", () => this.moveCameras(this.focused, (camera) => camera.zoom(0.8)));
     on("zoom-out", "click", () => this.moveCameras(this.focused, (camera) => camera.zoom(1.25)));
     on("heat", "change", () => this.setHeat($("heat").value));
-    on("opacity", "input", () => this.invalidate());
+    on("opacity", "input", () => this.invalidate(this.views.result));
     on("linked", "change", () => this.prefer({ linked: $("linked").checked }));
     $("linked").checked = this.preferences.linked;
     document.querySelectorAll("input[name=style]").forEach((input) => {
@@ -438,33 +473,50 @@ class App {
     this.invalidate();
   }
 
-  invalidate() {
-    if (this.isStale) return;
-    this.isStale = true;
+  // These views are to be drawn again; all where none is named.
+  invalidate(...views) {
+    const stale = views.length > 0 ? views : (this.views?.list ?? []);
+    stale.forEach((view) => (view.isStale = true));
+    this.refresh();
+  }
+
+  // Markers are to be put where they belong.
+  refresh() {
+    if (this.isWaiting) return;
+    this.isWaiting = true;
     requestAnimationFrame(() => {
-      this.isStale = false;
+      this.isWaiting = false;
       this.draw();
     });
   }
 
   draw() {
     if (!this.views) return;
-    const colours = COLOURS[this.theme];
+    const isResized = this.renderer.begin();
+    for (const view of this.views.list) {
+      if (view.isStale || isResized) this.drawView(view);
+      view.isStale = false;
+    }
+    this.showMarkers();
+  }
+
+  drawView(view) {
     const { renderer } = this;
     const { style } = this.preferences;
-    renderer.begin(colours.back);
-    for (const view of this.views.list) {
-      if (!view.shape) continue;
-      const { box } = view;
-      renderer.part(box, view.camera.matrices(box.width / box.height));
-      const isResult = view.side === "result";
-      const range = isResult && this.heat ? HEATS[this.heat] : null;
-      renderer.draw(view.shape, { style, colour: colours[view.side], line: colours.line, range });
-      const opacity = Number($("opacity").value);
-      if (isResult && opacity > 0 && this.views.target.shape) {
-        renderer.draw(this.views.target.shape, { style: "shaded", colour: colours.target, alpha: opacity });
-      }
+    const { box } = view;
+    const colours = COLOURS[this.theme];
+    renderer.part(box, view.camera.matrices(box.width / box.height), colours.back);
+    if (!view.shape) return;
+    const isResult = view.side === "result";
+    const range = isResult ? (this.heat ? HEATS[this.heat] : null) : [0, 1];
+    renderer.draw(view.shape, { style, colour: colours[view.side], line: colours.line, range });
+    const opacity = Number($("opacity").value);
+    if (isResult && opacity > 0 && this.views.target.shape) {
+      renderer.draw(this.views.target.shape, { style: "shaded", colour: colours.target, alpha: opacity });
     }
+  }
+
+  showMarkers() {
     const landmarks = this.state?.landmarks ?? [];
     this.views.list.forEach((view) => view.showMarkers(landmarks, this.chosen));
     this.panels.showMisses(this.misses(landmarks), this.chosen);

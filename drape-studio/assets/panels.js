@@ -129,6 +129,39 @@ export class Panels {
       return item;
     }));
     this.showLandmarks(landmarks);
+    this.showParts(state);
+  }
+
+  // Groups, objects and materials of the source, and how each is draped.
+  showParts({ source, parts }) {
+    const names = source?.parts ?? [];
+    $("parts-section").hidden = names.length === 0;
+    const key = JSON.stringify(names);
+    if (this.partNames !== key) {
+      this.partNames = key;
+      this.parts = new Map(names.map((name) => [name, this.addPart(name)]));
+      $("parts").replaceChildren(...[...this.parts.values()].map(({ item }) => item));
+    }
+    const ways = Object.fromEntries(names.map((name) => [name, parts.free.includes(name) ? "free" : parts.rigid.includes(name) ? "rigid" : "draped"]));
+    for (const [name, { select }] of this.parts) select.value = ways[name];
+    this.app.setParts(ways);
+  }
+
+  addPart(name) {
+    const [item, label, select] = ["li", "span", "select"].map((tag) => document.createElement(tag));
+    label.textContent = label.title = name;
+    for (const way of ["draped", "free", "rigid"]) select.append(new Option(way, way));
+    select.setAttribute("aria-label", `How ${name} is draped`);
+    select.title = "Free parts attract nothing and are carried along, rigid ones move as one body";
+    select.addEventListener("change", async () => {
+      await this.app.ask("part", { name, treatment: select.value });
+      // Where it was refused, what holds is shown again.
+      this.showParts(this.app.state);
+    });
+    for (const event of ["pointerenter", "focusin"]) item.addEventListener(event, () => this.app.pointOut(name));
+    for (const event of ["pointerleave", "focusout"]) item.addEventListener(event, () => this.app.pointOut(null));
+    item.append(label, select);
+    return { item, select };
   }
 
   showLandmarks(landmarks) {

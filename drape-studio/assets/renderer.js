@@ -37,7 +37,7 @@ void main() {
   bool away = dot(n, -vPlace) < 0.0;
   if (away) n = -n;
   vec3 base = colour.rgb;
-  if (mode == 2) {
+  if (mode == 2 && vValue > -0.5) {
     float t = clamp((vValue - range.x) / (range.y - range.x), 0.0, 1.0) * 4.0;
     int k = min(int(t), 3);
     base = mix(ramp[k], ramp[k + 1], t - float(k));
@@ -69,37 +69,37 @@ const compile = (gl) => {
 export class Renderer {
   constructor(canvas) {
     this.canvas = canvas;
-    this.gl = canvas.getContext("webgl2", { antialias: true, alpha: false, powerPreference: "high-performance" });
+    this.gl = canvas.getContext("webgl2", { antialias: true, alpha: false, preserveDrawingBuffer: true, powerPreference: "high-performance" });
     if (!this.gl) throw new Error("this browser shows no WebGL 2");
     this.program = compile(this.gl);
     const names = ["view", "both", "pointSize", "colour", "ramp", "range", "mode"];
     this.at = Object.fromEntries(names.map((name) => [name, this.gl.getUniformLocation(this.program, name)]));
   }
 
-  // Fits the canvas to its place on the page.
-  begin(background) {
+  // Fits the canvas to its place on the page; whether everything has to be drawn again.
+  begin() {
     const { gl, canvas } = this;
     const ratio = window.devicePixelRatio || 1;
     const [width, height] = [Math.round(canvas.clientWidth * ratio), Math.round(canvas.clientHeight * ratio)];
-    if (canvas.width !== width || canvas.height !== height) [canvas.width, canvas.height] = [width, height];
-    gl.disable(gl.SCISSOR_TEST);
-    gl.viewport(0, 0, width, height);
-    gl.clearColor(...background, 1);
-    gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
+    const isResized = canvas.width !== width || canvas.height !== height;
+    if (isResized) [canvas.width, canvas.height] = [width, height];
     gl.enable(gl.DEPTH_TEST);
     gl.depthFunc(gl.LEQUAL);
     gl.enable(gl.SCISSOR_TEST);
     gl.useProgram(this.program);
     gl.uniform3fv(this.at.ramp, RAMP);
+    return isResized;
   }
 
-  // A part of the canvas, in pixels of the page from the canvas's corner.
-  part(box, matrices) {
+  // Clears a part of the canvas and draws there, in pixels of the page from the canvas's corner.
+  part(box, matrices, background) {
     const { gl, canvas } = this;
     const ratio = canvas.width / Math.max(1, canvas.clientWidth);
     const rect = [box.left, canvas.clientHeight - box.top - box.height, box.width, box.height].map((x) => Math.round(x * ratio));
     gl.viewport(...rect);
     gl.scissor(...rect);
+    gl.clearColor(...background, 1);
+    gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
     gl.uniformMatrix4fv(this.at.view, false, matrices.view);
     gl.uniformMatrix4fv(this.at.both, false, matrices.both);
     this.ratio = ratio;

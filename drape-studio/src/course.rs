@@ -3,7 +3,7 @@
 use anyhow::{Context as _, Result};
 use mesh_core::{Landmark, Positions};
 use mesh_init::InitInput;
-use neural_drape::{Drape, DrapeConfig, DrapeInput, DrapeState, StepReport};
+use neural_drape::{Drape, DrapeConfig, DrapeInput, DrapeState, Regions, StepReport};
 
 use crate::session::{landmarks, Change, Event, Mark, RunLog};
 use crate::{Scene, Settings, Toolbox};
@@ -16,6 +16,7 @@ pub(crate) struct Start {
     pub(crate) settings: Settings,
     pub(crate) initial: Positions,
     landmarks: Vec<Landmark>,
+    regions: Regions,
 }
 
 impl Start {
@@ -24,10 +25,12 @@ impl Start {
         let settings = toolbox.settings(&log.settings)?;
         let landmarks = landmarks(&log.landmarks);
         let initial = toolbox.deform(scene, &landmarks, &settings)?.positions;
+        let (regions, _) = toolbox.regions(scene, &log.parts)?;
         Ok(Self {
             settings,
             initial,
             landmarks,
+            regions,
         })
     }
 }
@@ -187,7 +190,11 @@ fn fresh<'a>(scene: &'a Scene, start: &'a Start) -> Result<Drape<'a>> {
         target: scene.target.parts.over.as_ref(),
         landmarks: &start.landmarks,
     };
-    Ok(Drape::new(input, start.settings.config.clone())?)
+    let mut drape = Drape::new(input, start.settings.config.clone())?;
+    if !start.regions.is_none() {
+        drape.set_regions(&start.regions)?;
+    }
+    Ok(drape)
 }
 
 fn more_iterations(config: &DrapeConfig) -> usize {

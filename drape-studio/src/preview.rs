@@ -1,5 +1,6 @@
 //! The thread that shows what the landmarks as they are would give.
 
+use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::mpsc::Sender;
 use std::sync::Arc;
 
@@ -10,9 +11,11 @@ use crate::desk::Inbox;
 use crate::figures::FiguresJob;
 use crate::hub::{FrameKind, Hub};
 use crate::latest::Latest;
+use crate::rough::{rough, LARGE};
 use crate::{Scene, Settings, Toolbox};
 
 /// What is to be shown of the landmarks.
+#[derive(Clone)]
 pub(crate) enum Shown {
     /// Nothing: they are examined only.
     Nothing,
@@ -23,12 +26,15 @@ pub(crate) enum Shown {
 }
 
 /// What to deform.
+#[derive(Clone)]
 pub(crate) struct PreviewJob {
     pub(crate) number: u32,
     pub(crate) scene: Scene,
     pub(crate) settings: Settings,
     pub(crate) landmarks: Vec<Landmark>,
     pub(crate) shown: Shown,
+    /// The number of the newest job: an older one is not shown any more.
+    pub(crate) newest: Arc<AtomicU32>,
     pub(crate) figures: Arc<Latest<FiguresJob>>,
 }
 
@@ -51,6 +57,28 @@ pub(crate) fn preview(
     })
 }
 
+/// Starts the thread that shows the shapes of large sources roughly, before [`preview`] has the exact ones.
+pub(crate) fn rough_preview(hub: Arc<Hub>) -> Latest<PreviewJob> {
+    Latest::start(move |job: PreviewJob| {
+        let (kind, present) = match &job.shown {
+            Shown::Nothing => return,
+            Shown::Initial => (FrameKind::Initial, None),
+            Shown::Adjusted(present) => (FrameKind::Adjusted, Some(present.as_ref())),
+        };
+        if job.scene.source.rest.len() > LARGE && job.is_newest() {
+            if let Some(x) = rough(&job.scene, &job.landmarks, present) {
+                hub.show(&job.scene, kind, 0, Arc::new(x));
+            }
+        }
+    })
+}
+
+impl PreviewJob {
+    fn is_newest(&self) -> bool {
+        self.newest.load(Ordering::SeqCst) == self.number
+    }
+}
+
 /// Shows the shape; what had to be assumed for it.
 fn show(job: &PreviewJob, toolbox: &dyn Toolbox, hub: &Hub) -> anyhow::Result<Vec<String>> {
     let mut assumed = Vec::new();
@@ -66,6 +94,9 @@ fn show(job: &PreviewJob, toolbox: &dyn Toolbox, hub: &Hub) -> anyhow::Result<Ve
             (FrameKind::Initial, deformed.positions)
         }
     };
+    if !job.is_newest() {
+        return Ok(assumed);
+    }
     let x = Arc::new(x);
     hub.show(&job.scene, kind, 0, Arc::clone(&x));
     job.figures.ask(FiguresJob {

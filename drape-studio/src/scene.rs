@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use anyhow::{ensure, Context as _};
-use mesh_core::io::{self, MeshFile};
+use mesh_core::io::{self, MeshFile, NamedFaces};
 use mesh_core::{
     Aabb, HalfedgeMesh, Location, MeshPoint, Point3, PolygonSoup, Positions, TargetSurface,
     TriangleBvh, Triangulation, UnitFrame, Vector3, Weld,
@@ -13,6 +13,9 @@ use mesh_core::{
 use crate::display::Display;
 use crate::pick::{self, Ray};
 use crate::{TargetParts, Toolbox};
+
+/// More parts than this are not listed.
+const MAX_PARTS: usize = 200;
 
 /// A source and a target.
 #[derive(Clone)]
@@ -103,6 +106,39 @@ impl Source {
     /// One position per vertex of the file.
     pub fn spread(&self, positions: &Positions) -> Positions {
         Positions::from(self.weld.spread(positions.as_slice()))
+    }
+
+    /// The groups, objects and materials of the file, each name once.
+    pub(crate) fn parts(&self) -> Vec<&NamedFaces> {
+        let contents = self.file.contents();
+        let lists = [&contents.groups, &contents.objects, &contents.materials];
+        let mut parts: Vec<&NamedFaces> = Vec::new();
+        for named in lists.into_iter().flatten() {
+            let is_known = parts.iter().any(|p| p.name == named.name);
+            if !is_known && parts.len() < MAX_PARTS {
+                parts.push(named);
+            }
+        }
+        parts
+    }
+
+    /// The triangles of the faces that have a name, as ranges of rows.
+    pub(crate) fn part_triangles(&self, name: &str) -> Vec<[usize; 2]> {
+        let t = &self.triangulation;
+        // Triangles are in the order of their faces.
+        let mut first = vec![0; self.mesh.n_faces() + 1];
+        for row in 0..t.len() {
+            first[t.parent(row).index() + 1] += 1;
+        }
+        for face in 1..first.len() {
+            first[face] += first[face - 1];
+        }
+        let end = |face: usize| first[face.min(self.mesh.n_faces())];
+        let contents = self.file.contents();
+        let lists = [&contents.groups, &contents.objects, &contents.materials];
+        let named = lists.into_iter().flatten().filter(|n| n.name == name);
+        let ranges = named.flat_map(|n| &n.faces);
+        ranges.map(|r| [end(r.start), end(r.end)]).collect()
     }
 
     /// The first row of the file that is vertex `v`.

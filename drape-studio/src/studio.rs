@@ -5,7 +5,7 @@ use std::net::{Ipv4Addr, SocketAddr, TcpListener};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use anyhow::{ensure, Context as _, Result};
+use anyhow::{anyhow, ensure, Context as _, Result};
 
 use crate::desk::{Desk, DeskParts};
 use crate::hub::Hub;
@@ -165,16 +165,27 @@ fn open_inputs(
         *record = Some(new);
     }
     let [source_record, target_record] = records;
-    let source = match &source_record {
-        Some(record) => read_or_forget(record, options.source.is_some(), notice, Source::read)?,
-        None => None,
-    };
-    let target = match &target_record {
-        Some(record) => read_or_forget(record, options.target.is_some(), notice, |path| {
-            Target::read(path, toolbox)
-        })?,
-        None => None,
-    };
+    let (source, target) = std::thread::scope(|scope| {
+        let source = source_record.as_ref().map(|record| {
+            scope.spawn(|| read_or_forget(record, options.source.is_some(), Source::read))
+        });
+        let target = target_record.as_ref().map(|record| {
+            read_or_forget(record, options.target.is_some(), |path| {
+                Target::read(path, toolbox)
+            })
+        });
+        let source = source.map(|thread| {
+            thread
+                .join()
+                .map_err(|_| anyhow!("the source cannot be read"))?
+        });
+        Ok::<_, anyhow::Error>((source.transpose()?, target.transpose()?))
+    })?;
+    let (source, target) = (source.unwrap_or_default(), target.unwrap_or_default());
+    if let Some(gone) = source.gone.or(target.gone) {
+        *notice = Some(gone);
+    }
+    let (source, target) = (source.input, target.input);
     (session.source, session.target) = (
         source_record.filter(|_| source.is_some()),
         target_record.filter(|_| target.is_some()),
@@ -188,21 +199,38 @@ fn open_inputs(
     Ok(Inputs { source, target })
 }
 
+/// An input, or why it is not there.
+struct MaybeRead<T> {
+    input: Option<Arc<T>>,
+    gone: Option<String>,
+}
+
+impl<T> Default for MaybeRead<T> {
+    fn default() -> Self {
+        Self {
+            input: None,
+            gone: None,
+        }
+    }
+}
+
 /// An input that was asked for must be there; one that the session names may be gone.
 fn read_or_forget<T>(
     record: &InputRecord,
     is_asked: bool,
-    notice: &mut Option<String>,
     read: impl FnOnce(&Path) -> Result<T>,
-) -> Result<Option<Arc<T>>> {
+) -> Result<MaybeRead<T>> {
     let unchanged = if is_asked { Ok(()) } else { record.check() };
     match unchanged.and_then(|()| read(&record.path)) {
-        Ok(input) => Ok(Some(Arc::new(input))),
+        Ok(input) => Ok(MaybeRead {
+            input: Some(Arc::new(input)),
+            gone: None,
+        }),
         Err(error) if is_asked => Err(error),
-        Err(error) => {
-            *notice = Some(format!("{error:#}"));
-            Ok(None)
-        }
+        Err(error) => Ok(MaybeRead {
+            input: None,
+            gone: Some(format!("{error:#}")),
+        }),
     }
 }
 

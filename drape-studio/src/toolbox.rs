@@ -4,7 +4,8 @@ use std::path::Path;
 use std::sync::Arc;
 
 use mesh_core::{Landmark, Positions, TargetSurface};
-use neural_drape::DrapeConfig;
+use neural_drape::{DrapeConfig, Regions};
+use serde::{Deserialize, Serialize};
 
 use crate::Scene;
 
@@ -25,6 +26,16 @@ pub struct TargetParts {
     pub over: Arc<dyn TargetSurface>,
     /// What results are judged by.
     pub judged: Arc<dyn TargetSurface>,
+}
+
+/// Parts of the source that are not draped like the rest, by name.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Parts {
+    /// Those that attract nothing and are carried along.
+    pub free: Vec<String>,
+    /// Those whose pieces move as one body each.
+    pub rigid: Vec<String>,
 }
 
 /// The source brought to its landmarks.
@@ -77,6 +88,12 @@ pub trait Toolbox: Send + Sync {
         landmarks: &[Landmark],
         settings: &Settings,
     ) -> anyhow::Result<Deformed>;
+
+    /// Looks parts up; inner pieces that nobody named are found. What was decided without being asked, in words.
+    ///
+    /// # Errors
+    /// The source has no such part, or nothing would be left to drape.
+    fn regions(&self, scene: &Scene, parts: &Parts) -> anyhow::Result<(Regions, Vec<String>)>;
 
     /// Everything suspicious about the inputs and landmarks, in words.
     fn examine(&self, scene: &Scene, landmarks: &[Landmark]) -> Vec<String>;

@@ -37,6 +37,15 @@ pub(crate) struct Chosen {
 }
 
 impl RegionArgs {
+    /// As if these names had been given.
+    pub(crate) fn named(free: &[String], rigid: &[String]) -> Self {
+        Self {
+            free: free.to_vec(),
+            rigid: rigid.to_vec(),
+            ..Self::default()
+        }
+    }
+
     /// Looks the parts up. Without any name, inner pieces are found.
     pub(crate) fn resolve(&self, pair: &Pair) -> anyhow::Result<Chosen> {
         let n = pair.source.mesh.n_vertices();

@@ -5,7 +5,7 @@ use mesh_core::{Landmark, Point3};
 use serde_json::{json, Value};
 use toml::Table;
 
-use super::{Desk, Request, Side};
+use super::{Desk, Request, Side, Treatment};
 use crate::pick::{first_hit, Ray};
 use crate::scene::mirrored;
 use crate::session::{Mark, MarkKind, SourcePlace, MAX_MARKS};
@@ -25,19 +25,40 @@ enum Place {
 impl Desk {
     /// Does what a page asks for.
     pub(super) fn answer(&mut self, request: Request) -> Result<Value> {
-        if !matches!(
-            request,
-            Request::Drag { .. } | Request::Pick { .. } | Request::Curves
-        ) {
-            self.finish_drag();
-        }
-        match request {
+        match &request {
             Request::Pick { side, ray } => {
-                let place = self.pick(side, &ray);
+                let place = self.pick(*side, ray);
                 return Ok(self.describe(place));
             }
             Request::Curves => return Ok(self.hub.curves()),
-            Request::Place { side, ray } => return self.place(side, &ray),
+            Request::PartFaces { name } => return Ok(self.part_faces(name)),
+            Request::Place { side, ray } => {
+                self.finish_drag();
+                return self.place(*side, ray);
+            }
+            Request::Drape
+            | Request::Pause
+            | Request::Resume
+            | Request::Step
+            | Request::Stop
+            | Request::Reset => {
+                self.finish_drag();
+                self.command(&request)?;
+            }
+            _ => {
+                self.change(request)?;
+                self.edited();
+            }
+        }
+        Ok(Value::Null)
+    }
+
+    /// Makes an edit.
+    fn change(&mut self, request: Request) -> Result<()> {
+        if !matches!(request, Request::Drag { .. }) {
+            self.finish_drag();
+        }
+        match request {
             Request::Drag {
                 landmark,
                 side,
@@ -59,6 +80,7 @@ impl Desk {
                 ensure!(is_axis, "an axis is 0, 1 or 2");
                 self.session.edit(|d| d.mirror = axes);
             }
+            Request::Part { name, treatment } => self.treat(&name, treatment)?,
             Request::Undo => self.session.undo(),
             Request::Redo => self.session.redo(),
             Request::Preset { name } => {
@@ -71,18 +93,9 @@ impl Desk {
                 self.set_settings(&table.to_string())?;
             }
             Request::Settings { toml } => self.set_settings(&toml)?,
-            Request::Drape
-            | Request::Pause
-            | Request::Resume
-            | Request::Step
-            | Request::Stop
-            | Request::Reset => {
-                self.command(&request)?;
-                return Ok(Value::Null);
-            }
+            _ => bail!("this is no edit"),
         }
-        self.edited();
-        Ok(Value::Null)
+        Ok(())
     }
 
     /// After an edit: settings as the document has them, the preview, every page.
@@ -97,6 +110,33 @@ impl Desk {
         }
         self.ask_preview();
         self.changed();
+    }
+
+    /// Treats a part in its own way, if that leaves something to drape.
+    fn treat(&mut self, name: &str, treatment: Treatment) -> Result<()> {
+        let mut parts = self.session.document.parts.clone();
+        for list in [&mut parts.free, &mut parts.rigid] {
+            list.retain(|known| known != name);
+        }
+        match treatment {
+            Treatment::Draped => {}
+            Treatment::Free => parts.free.push(name.to_owned()),
+            Treatment::Rigid => parts.rigid.push(name.to_owned()),
+        }
+        let scene = self.scene().context("open a source and a target first")?;
+        let known = scene.source.parts();
+        ensure!(
+            known.iter().any(|part| part.name == name),
+            "the source has no part of this name"
+        );
+        self.toolbox.regions(&scene, &parts)?;
+        self.session.edit(|d| d.parts = parts);
+        Ok(())
+    }
+
+    fn part_faces(&self, name: &str) -> Value {
+        let source = self.source.as_ref();
+        json!(source.map(|source| source.part_triangles(name)))
     }
 
     fn set_settings(&mut self, toml: &str) -> Result<()> {

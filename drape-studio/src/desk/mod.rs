@@ -5,9 +5,11 @@ mod request;
 mod runs;
 mod state;
 
+use request::Treatment;
 pub(crate) use request::{Request, Side};
 
 use std::path::PathBuf;
+use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::mpsc::{channel, Receiver, RecvTimeoutError, Sender};
 use std::sync::Arc;
 use std::thread;
@@ -21,7 +23,7 @@ use crate::checkpoint;
 use crate::figures::{judge, FiguresJob};
 use crate::hub::{FrameKind, Hub};
 use crate::latest::Latest;
-use crate::preview::{preview, PreviewJob, Shown};
+use crate::preview::{preview, rough_preview, PreviewJob, Shown};
 use crate::runner::{News, Runner};
 use crate::session::{Document, InputRecord, RunLog, Session};
 use crate::{Scene, Settings, Source, Target, Toolbox};
@@ -118,7 +120,9 @@ pub(crate) struct Desk {
     run: Option<ActiveRun>,
     n_runs: u32,
     preview: Latest<PreviewJob>,
+    rough: Latest<PreviewJob>,
     n_previews: u32,
+    newest_preview: Arc<AtomicU32>,
     figures: Arc<Latest<FiguresJob>>,
     warnings: Vec<String>,
     preview_error: Option<String>,
@@ -144,6 +148,7 @@ impl Desk {
                 Arc::clone(&parts.hub),
                 inbox.clone(),
             ),
+            rough: rough_preview(Arc::clone(&parts.hub)),
             inbox: inbox.clone(),
             toolbox: parts.toolbox,
             hub: parts.hub,
@@ -155,6 +160,7 @@ impl Desk {
             run: None,
             n_runs: 0,
             n_previews: 0,
+            newest_preview: Arc::default(),
             warnings: Vec::new(),
             preview_error: None,
             notice: parts.notice,
@@ -258,14 +264,18 @@ impl Desk {
         if !is_pending {
             self.hub.show_drape_again();
         }
-        self.preview.ask(PreviewJob {
+        self.newest_preview.store(self.n_previews, Ordering::SeqCst);
+        let job = PreviewJob {
             number: self.n_previews,
             scene,
             settings: self.settings.clone(),
             landmarks: self.landmarks(),
             shown,
+            newest: Arc::clone(&self.newest_preview),
             figures: Arc::clone(&self.figures),
-        });
+        };
+        self.rough.ask(job.clone());
+        self.preview.ask(job);
     }
 
     fn landmarks(&self) -> Vec<Landmark> {

@@ -15,6 +15,15 @@ pub(crate) enum Side {
     Result,
 }
 
+/// How a part is draped.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub(crate) enum Treatment {
+    Draped,
+    Free,
+    Rigid,
+}
+
 /// One request.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(tag = "do", rename_all = "snake_case", deny_unknown_fields)]
@@ -51,6 +60,15 @@ pub(crate) enum Request {
     /// Axes of source and target across which landmarks are placed twice.
     Mirror {
         axes: Option<[usize; 2]>,
+    },
+    /// How a part of the source is treated by the next drape.
+    Part {
+        name: String,
+        treatment: Treatment,
+    },
+    /// The triangles of a part, as ranges of rows.
+    PartFaces {
+        name: String,
     },
     Undo,
     Redo,

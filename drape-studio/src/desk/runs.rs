@@ -50,6 +50,7 @@ impl Desk {
         self.notice = None;
         let log = RunLog {
             settings: self.settings.toml.clone(),
+            parts: self.session.document.parts.clone(),
             landmarks: self.complete_marks(),
             events: Vec::new(),
             iteration: 0,

@@ -21,6 +21,7 @@ impl Desk {
             "preview_error": self.preview_error,
             "notice": self.notice,
             "mirror": document.mirror,
+            "parts": document.parts,
             "settings": {
                 "preset": self.settings.preset,
                 "seed": self.settings.config.seed,
@@ -45,6 +46,7 @@ impl Desk {
             "kind": "mesh",
             "hash": self.session.source.as_ref().map(|r| &r.fnv1a),
             "symmetry": source.symmetry,
+            "parts": source.parts().iter().map(|part| &part.name).collect::<Vec<_>>(),
         })
     }
 

@@ -145,6 +145,7 @@ impl Work {
     fn log(&self) -> RunLog {
         self.session.run.clone().unwrap_or_else(|| RunLog {
             settings: self.session.document.settings.clone(),
+            parts: self.session.document.parts.clone(),
             landmarks: self.session.document.marks.clone(),
             events: Vec::new(),
             iteration: 0,

@@ -158,6 +158,7 @@ mod tests {
         session.edit(|d| d.marks.push(mark.clone()));
         session.run = Some(RunLog {
             settings: session.document.settings.clone(),
+            parts: crate::Parts::default(),
             landmarks: Vec::new(),
             events: vec![
                 Event {

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::mark::Mark;
+use crate::Parts;
 
 /// A drape from its start to where it is.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -10,6 +11,9 @@ use super::mark::Mark;
 pub(crate) struct RunLog {
     /// The settings that it started with, as TOML.
     pub(crate) settings: String,
+    /// Parts of the source that are treated in their own way.
+    #[serde(default)]
+    pub(crate) parts: Parts,
     /// The landmarks that it started with.
     pub(crate) landmarks: Vec<Mark>,
     /// What changed on the way, in order.

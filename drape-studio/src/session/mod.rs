@@ -10,6 +10,8 @@ pub(crate) use mark::{landmarks, Mark, MarkKind, SourcePlace};
 
 use serde::{Deserialize, Serialize};
 
+use crate::Parts;
+
 /// How many edits can be undone.
 const MAX_UNDO: usize = 200;
 /// More landmarks than this are a mistake.
@@ -40,6 +42,9 @@ pub(crate) struct Document {
     /// The axis of source and of target across which landmarks are placed twice; none where they are not.
     #[serde(default)]
     pub(crate) mirror: Option<[usize; 2]>,
+    /// Parts of the source that the next drape treats in their own way.
+    #[serde(default)]
+    pub(crate) parts: Parts,
 }
 
 impl Session {
@@ -53,6 +58,7 @@ impl Session {
                 marks: Vec::new(),
                 settings,
                 mirror: None,
+                parts: Parts::default(),
             },
             next_id: 1,
             run: None,
@@ -113,6 +119,7 @@ impl Session {
     /// Forgets what depends on inputs that are no longer there.
     pub(crate) fn forget_places(&mut self) {
         self.document.marks.clear();
+        self.document.parts = Parts::default();
         self.undo.clear();
         self.redo.clear();
         self.run = None;

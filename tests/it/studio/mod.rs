@@ -1,5 +1,6 @@
 //! The studio, used in a browser.
 
+mod big;
 mod browser;
 mod page;
 mod pictures;

@@ -33,28 +33,64 @@ fn every_state_can_be_drawn() {
 
     let [source, target, landmarks] = ["source.obj", "target.obj", "landmarks.json"]
         .map(|name| pair.join(name).display().to_string());
+    // Long enough not to end while it is looked at.
+    std::fs::write(
+        folder.path().join("long.toml"),
+        "[[stages]]\nn_iterations = 3000\n",
+    )
+    .unwrap();
     let server = Server::start(
         folder.path(),
-        &[&source, &target, "--fresh", "--landmarks", &landmarks],
+        &[
+            &source,
+            &target,
+            "--fresh",
+            "--landmarks",
+            &landmarks,
+            "--config",
+            "long.toml",
+        ],
     );
     page.go(&server.url);
-    page.wait("studio.views.result.shape && studio.figures");
+    page.wait("studio.views.result.shape && studio.figures && studio.state.warnings");
     save(&page, "preview");
     page.press("#drape");
     page.wait("studio.frame.iteration > 60 && studio.figures.iteration > 10");
+    save(&page, "draping");
     page.press("#pause");
     page.wait("studio.state.run.status === 'paused'");
-    save(&page, "paused");
+    drag_away(&page);
+    page.wait("studio.frame.kind === 2");
+    save(&page, "paused-and-changed");
+    page.press("#undo");
+    page.wait("studio.frame.kind === 1");
     page.value("studio.setHeat('distance')");
     page.wait("studio.views.result.shape.values");
     page.prefer("dark");
-    save(&page, "heat-dark");
+    save(&page, "distance-dark");
     page.value("studio.setHeat('stretch')");
     page.wait("studio.views.result.shape.perTriangle");
     page.prefer("light");
     save(&page, "stretch");
     page.value("studio.setHeat('')");
-    page.value("document.getElementById('opacity').value = 0.5");
+    page.value("document.getElementById('opacity').value = 0.5; studio.invalidate(); 1");
     page.size([3840, 2160], 1.0);
-    save(&page, "uhd");
+    save(&page, "overlay-uhd");
+    page.size([1280, 800], 1.0);
+    page.press("#settings");
+    save(&page, "settings");
+    page.value("document.getElementById('settings-dialog').close(), true");
+    server.kill();
+    page.wait("!document.getElementById('offline').hidden");
+    save(&page, "offline");
+}
+
+/// Moves the first landmark of the target to where it does not belong.
+fn drag_away(page: &Page) {
+    let at = page.value(
+        "(() => { const p = studio.state.landmarks[2].target.point; const at = studio.onPage('target', p); \
+         return [Math.round(at.x), Math.round(at.y)]; })()",
+    );
+    let from = super::browser::point(&at);
+    page.drag(from, [from[0] + 70.0, from[1] + 45.0]);
 }

@@ -136,6 +136,12 @@ fn files_are_opened_in_the_page_and_keys_are_listed() {
         }
     }
     page.wait("studio.views.result.shape && studio.figures.landmark_rms < 0.01");
+    // The groups of the source are parts that can be free or rigid; that can be undone.
+    page.value("(() => { const s = document.querySelector('#parts select'); s.value = 'free'; s.dispatchEvent(new Event('change')); return true; })()");
+    page.wait("studio.state.parts.free.length === 1 && studio.views.source.shape.values");
+    page.press("#undo");
+    page.wait("studio.state.parts.free.length === 0");
+
     place.write("broken.obj", "v 0 0 0\nv 1 x 0\n");
     page.press("#open-source");
     page.choose_file(&place.path("broken.obj"));

@@ -1,0 +1,51 @@
+//! A first idea of a deformation, for sources whose real one takes long.
+
+use mesh_core::{Landmark, Point3, Positions, Vector3};
+use mesh_init::{fit_affine, point_pairs, BoundsPair, SimilarityPrior};
+use mesh_operators::SpaceExtension;
+use rayon::prelude::*;
+
+use crate::Scene;
+
+/// Sources with more vertices than this are shown roughly at once, then exactly.
+pub(crate) const LARGE: usize = 20_000;
+/// Landmarks that count at most.
+const MAX_CENTRES: usize = 200;
+
+/// `present`, or the source where the affine map of its landmarks puts it, with what the landmarks still miss spread
+/// through space. They are met; the surface itself is not asked. None without landmarks.
+pub(crate) fn rough(
+    scene: &Scene,
+    landmarks: &[Landmark],
+    present: Option<&Positions>,
+) -> Option<Positions> {
+    let source = &scene.source;
+    let placed = match present {
+        Some(present) => present.clone(),
+        None => {
+            let bounds = BoundsPair {
+                source: source.bounds(),
+                target: scene.target.judged().bounds(),
+            };
+            let pairs = point_pairs(landmarks, &source.rest);
+            let affine = fit_affine(&pairs, bounds, SimilarityPrior::LeaveOneOut);
+            source.rest.map(|p| affine.apply(p))
+        }
+    };
+    let from: Vec<Point3> = landmarks
+        .iter()
+        .map(|l| l.source.position(&placed))
+        .collect();
+    let missed: Vec<Vector3> = landmarks
+        .iter()
+        .zip(&from)
+        .map(|(l, p)| l.target - p)
+        .collect();
+    let field = SpaceExtension::new(&from, &missed, MAX_CENTRES).ok()?;
+    let moved: Vec<Point3> = placed
+        .as_slice()
+        .par_iter()
+        .map(|p| p + field.displacement_at(p))
+        .collect();
+    Some(Positions::from(moved))
+}
