@@ -179,7 +179,8 @@ export class Renderer {
     this.attribute(0, shape.buffers.positions, 3);
     this.attribute(1, null);
     this.attribute(2, null);
-    this.colour(line, 0.55 * alpha);
+    // Where there are more edges than pixels between them, they would blacken the shape.
+    this.colour(line, alpha * Math.max(0.06, 0.55 * Math.min(1, 40000 / shape.edges.length)));
     gl.uniform1i(at.mode, 1);
     gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, shape.buffers.edges);
     gl.drawElements(gl.LINES, shape.edges.length, gl.UNSIGNED_INT, 0);

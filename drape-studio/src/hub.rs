@@ -121,15 +121,17 @@ impl Hub {
         self.shared().draped.clone()
     }
 
-    /// Shows the drape again, after a shape that it might have taken.
-    pub(crate) fn show_drape_again(&self) {
+    /// Shows the drape again, after a shape that it might have taken; whether that was shown.
+    pub(crate) fn show_drape_again(&self) -> bool {
         let draped = self.draped();
         let is_other = |shown: &Option<Arc<Frame>>| {
             shown.as_ref().map(|f| f.serial) != draped.as_ref().map(|f| f.serial)
         };
-        if draped.is_some() && is_other(&self.frame.borrow()) {
+        let is_needed = draped.is_some() && is_other(&self.frame.borrow());
+        if is_needed {
             self.frame.send_replace(draped);
         }
+        is_needed
     }
 
     /// There is no drape any more.

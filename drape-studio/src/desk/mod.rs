@@ -262,7 +262,7 @@ impl Desk {
             }),
         };
         if !is_pending {
-            self.hub.show_drape_again();
+            self.show_drape_again();
         }
         self.newest_preview.store(self.n_previews, Ordering::SeqCst);
         let job = PreviewJob {
@@ -276,6 +276,21 @@ impl Desk {
         };
         self.rough.ask(job.clone());
         self.preview.ask(job);
+    }
+
+    /// Shows and judges the drape again, where a shape that it might have taken is shown.
+    fn show_drape_again(&self) {
+        if let (true, Some(scene), Some(frame)) =
+            (self.hub.show_drape_again(), self.scene(), self.hub.draped())
+        {
+            self.figures.ask(FiguresJob {
+                scene,
+                positions: Arc::clone(&frame.positions),
+                landmarks: self.landmarks(),
+                iteration: Some(frame.iteration),
+                is_resting: true,
+            });
+        }
     }
 
     fn landmarks(&self) -> Vec<Landmark> {

@@ -64,25 +64,30 @@ fn every_state_can_be_drawn() {
     save(&page, "paused-and-changed");
     page.press("#undo");
     page.wait("studio.frame.kind === 1");
-    page.value("studio.setHeat('distance')");
-    page.wait("studio.views.result.shape.values");
-    page.prefer("dark");
-    save(&page, "distance-dark");
-    page.value("studio.setHeat('stretch')");
-    page.wait("studio.views.result.shape.perTriangle");
-    page.prefer("light");
-    save(&page, "stretch");
-    page.value("studio.setHeat('')");
-    page.value("document.getElementById('opacity').value = 0.5; studio.invalidate(); 1");
-    page.size([3840, 2160], 1.0);
-    save(&page, "overlay-uhd");
-    page.size([1280, 800], 1.0);
+    colours(&page, &save);
     page.press("#settings");
     save(&page, "settings");
     page.value("document.getElementById('settings-dialog').close(), true");
     server.kill();
     page.wait("!document.getElementById('offline').hidden");
     save(&page, "offline");
+}
+
+/// Heat maps, the target over the result, light and dark, a small and a large page.
+fn colours(page: &Page, save: &dyn Fn(&Page, &str)) {
+    page.value("studio.setHeat('distance')");
+    page.wait("studio.views.result.shape.values");
+    page.prefer("dark");
+    save(page, "distance-dark");
+    page.value("studio.setHeat('stretch')");
+    page.wait("studio.views.result.shape.perTriangle");
+    page.prefer("light");
+    save(page, "stretch");
+    page.value("studio.setHeat('')");
+    page.value("document.getElementById('opacity').value = 0.5; studio.invalidate(); 1");
+    page.size([3840, 2160], 1.0);
+    save(page, "overlay-uhd");
+    page.size([1280, 800], 1.0);
 }
 
 /// Moves the first landmark of the target to where it does not belong.
