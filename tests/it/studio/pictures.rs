@@ -24,9 +24,6 @@ fn every_state_can_be_drawn() {
     let page = Page::open(&browser, &empty.url, [1280, 800]);
     page.wait("studio.state");
     save(&page, "empty");
-    page.prefer("dark");
-    save(&page, "empty-dark");
-    page.prefer("light");
     page.press("#help");
     save(&page, "keys");
     empty.kill();
