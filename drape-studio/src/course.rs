@@ -150,8 +150,13 @@ impl<'a> Course<'a> {
         self.log.events.push(Event { iteration, change });
     }
 
+    /// Where the vertices are; at the end of the run, after its last stage.
     pub(crate) fn positions(&self) -> Positions {
-        self.drape.positions()
+        if self.drape.iteration() == self.drape.n_iterations() {
+            self.drape.finish().positions
+        } else {
+            self.drape.positions()
+        }
     }
 
     pub(crate) fn state(&mut self) -> DrapeState {
