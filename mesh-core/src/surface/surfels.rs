@@ -11,6 +11,8 @@ use crate::{Aabb, Point3, Vector3};
 const RADIUS: f64 = 0.7;
 /// Half the thickness of the band around a disc whose neighbours fill space, likewise.
 const BAND: f64 = 0.5;
+/// Only points farther apart than this share of the longest side are in doubt: dense clouds show their tips.
+const COARSE: f64 = 0.02;
 
 /// A cloud whose points are discs across their normals, with the area that the spacing of the points gives them.
 ///
@@ -21,6 +23,7 @@ pub struct SurfelCloud {
     cloud: Arc<PointCloud>,
     /// Area up to and including each point.
     cumulative: Vec<f64>,
+    longest_side: f64,
 }
 
 impl SurfelCloud {
@@ -35,7 +38,11 @@ impl SurfelCloud {
                 area
             })
             .collect();
-        Self { cloud, cumulative }
+        Self {
+            longest_side: cloud.bounds().longest_side(),
+            cloud,
+            cumulative,
+        }
     }
 }
 
@@ -63,7 +70,11 @@ impl TargetSurface for SurfelCloud {
         let offset = query - nearest.point;
         let along: Vector3 = offset - normal * normal.dot(&offset);
         let on_disc = nearest.point + shortened(along, RADIUS * spacing);
-        let band = BAND * spacing * (1.0 - flatness);
+        let band = if spacing > COARSE * self.longest_side {
+            BAND * spacing * (1.0 - flatness)
+        } else {
+            0.0
+        };
         let point = on_disc + shortened(query - on_disc, band);
         SurfacePoint {
             point,
