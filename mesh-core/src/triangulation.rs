@@ -42,22 +42,6 @@ impl Triangulation {
         Self { triangles, parents }
     }
 
-    /// The same triangles with every quad split along its other diagonal, as another program may split it.
-    pub fn flipped(&self) -> Self {
-        let mut triangles = self.triangles.clone();
-        let mut start = 0;
-        for group in self.parents.chunk_by(|a, b| a == b) {
-            if let [first, second] = &mut triangles[start..start + group.len()] {
-                (*first, *second) = other_diagonal(*first, *second);
-            }
-            start += group.len();
-        }
-        Self {
-            triangles,
-            parents: self.parents.clone(),
-        }
-    }
-
     /// All triangles, those of one face together, in face order.
     pub fn triangles(&self) -> &[[VertexId; 3]] {
         &self.triangles
@@ -134,19 +118,6 @@ fn polygon_area_vector(points: &[Point3]) -> Vector3 {
 }
 
 /// Quality of a triangle, negative when it turns against `normal`.
-/// The two triangles of a quad, split along its other diagonal.
-fn other_diagonal(one: [VertexId; 3], two: [VertexId; 3]) -> ([VertexId; 3], [VertexId; 3]) {
-    let apex = |t: [VertexId; 3], u: [VertexId; 3]| (0..3).find(|&k| !u.contains(&t[k]));
-    match (apex(one, two), apex(two, one)) {
-        (Some(i), Some(j)) => {
-            let (b, d) = (one[i], two[j]);
-            let (c, a) = (one[(i + 1) % 3], one[(i + 2) % 3]);
-            ([a, b, d], [b, c, d])
-        }
-        _ => (one, two),
-    }
-}
-
 fn signed_quality(corners: [Point3; 3], normal: &Vector3) -> f64 {
     triangle_quality(corners) * crate::measure::area_vector(corners).dot(normal).signum()
 }

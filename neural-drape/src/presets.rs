@@ -154,13 +154,13 @@ fn standard_stages() -> Vec<Stage> {
         corner_angle: 0.3,
         area_kl: 0.3,
         flip: 0.0,
-        drift: 7.5 * AUTHORS_SIDE * AUTHORS_SIDE,
+        drift: 15.0 * AUTHORS_SIDE * AUTHORS_SIDE,
         ..start
     };
     let end = Weights {
         worst_distance: 2.4 * AUTHORS_SIDE,
         landmark: 45.0 * AUTHORS_SIDE * AUTHORS_SIDE,
-        drift: 4.0 * AUTHORS_SIDE * AUTHORS_SIDE,
+        drift: 7.5 * AUTHORS_SIDE * AUTHORS_SIDE,
         triangle_quality: 0.5,
         fold_barrier: 10.0,
         ..fit

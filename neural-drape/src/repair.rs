@@ -14,8 +14,6 @@ const MAX_RINGS: usize = 4;
 const SWEEPS: usize = 40;
 /// A patch is left as it was if mending it would move a vertex farther than this share of the longest side.
 const MAX_MOTION: f64 = 0.03;
-/// The same for a patch that is broken only along the other diagonals of its quads.
-const MAX_MOTION_OTHER: f64 = 0.008;
 
 /// A result without what the drape broke, as far as that is possible.
 #[derive(Clone, Debug, PartialEq)]
@@ -47,8 +45,7 @@ impl Defects {
 /// Relaxes small patches around new folds and new skinny triangles towards the shape they had at rest, turned and
 /// scaled, with their surroundings held ([`LocalShape::relax`]); a patch grows until nothing in it is broken.
 ///
-/// A quad is looked at along both diagonals, since another program may split it along either. A patch that does not get
-/// better by a small motion stays as it was. All else stays, to the bit.
+/// A patch that does not get better by a small motion stays as it was. All else stays, to the bit.
 pub fn repair(triangulation: &Triangulation, rest: &Positions, x: &Positions) -> Repair {
     let judge = Judge::new(triangulation, rest);
     let before = judge.defects(x);
@@ -57,8 +54,7 @@ pub fn repair(triangulation: &Triangulation, rest: &Positions, x: &Positions) ->
     if !broken.is_empty() {
         let shape = LocalShape::new(triangulation, rest);
         let neighbours = Neighbours::new(triangulation, x.len());
-        let size = Aabb::of(x).longest_side();
-        let own = corners(judge.splits[0].broken(rest, x));
+        let reach = MAX_MOTION * Aabb::of(x).longest_side();
         for patch in neighbours.connected(&broken) {
             let mended = (0..=MAX_RINGS).find_map(|rings| {
                 let free = neighbours.grown(&patch, rings);
@@ -69,9 +65,7 @@ pub fn repair(triangulation: &Triangulation, rest: &Positions, x: &Positions) ->
                     is_mended(&left, &broken, &patch).then(|| (candidate.clone(), left))
                 })
             });
-            let is_own = patch.iter().any(|v| own.binary_search(v).is_ok());
-            let reach = if is_own { MAX_MOTION } else { MAX_MOTION_OTHER };
-            let is_small = |moved: &Positions| farthest_motion(&positions, moved) <= reach * size;
+            let is_small = |moved: &Positions| farthest_motion(&positions, moved) <= reach;
             if let Some((candidate, left)) = mended.filter(|(moved, _)| is_small(moved)) {
                 (positions, broken) = (candidate, left);
             }
@@ -103,82 +97,60 @@ fn is_mended(left: &[VertexId], broken: &[VertexId], patch: &[VertexId]) -> bool
         .all(|v| !patch.contains(v) && broken.contains(v))
 }
 
-/// Tells what is broken, along one diagonal of each quad and along the other.
+/// Tells what is broken that was not at rest.
 struct Judge<'a> {
+    triangulation: &'a Triangulation,
     rest: &'a Positions,
-    splits: [Split; 2],
-}
-
-struct Split {
-    triangulation: Triangulation,
     /// Those that are not folded at rest.
     edges: Vec<TriangulationEdge>,
 }
 
 impl<'a> Judge<'a> {
-    fn new(triangulation: &Triangulation, rest: &'a Positions) -> Self {
-        let splits = [triangulation.clone(), triangulation.flipped()].map(|triangulation| {
-            let normals = normals(&triangulation, rest);
-            let mut edges = triangulation.interior_edges();
-            edges.retain(|e| !is_folded(e, &normals));
-            Split {
-                triangulation,
-                edges,
-            }
-        });
-        Self { rest, splits }
-    }
-
-    /// Along the triangulation's own diagonals.
-    fn defects(&self, x: &Positions) -> Defects {
-        let [own, _] = &self.splits;
-        Defects {
-            folds: own.folds(x).map(|e| e.vertices).collect(),
-            skinny: own.skinny(self.rest, x).collect(),
+    fn new(triangulation: &'a Triangulation, rest: &'a Positions) -> Self {
+        let normals = normals(triangulation, rest);
+        let mut edges = triangulation.interior_edges();
+        edges.retain(|e| !is_folded(e, &normals));
+        Self {
+            triangulation,
+            rest,
+            edges,
         }
     }
 
-    /// Corners of all that is broken along either diagonal, in order.
-    fn broken_vertices(&self, x: &Positions) -> Vec<VertexId> {
-        corners(self.splits.iter().flat_map(|s| s.broken(self.rest, x)))
+    fn defects(&self, x: &Positions) -> Defects {
+        Defects {
+            folds: self.folds(x).map(|e| e.vertices).collect(),
+            skinny: self.skinny(x),
+        }
     }
-}
 
-/// The corners of triangles, each once, in order.
-fn corners(triangles: impl IntoIterator<Item = [VertexId; 3]>) -> Vec<VertexId> {
-    let mut vertices: Vec<VertexId> = triangles.into_iter().flatten().collect();
-    vertices.sort_unstable();
-    vertices.dedup();
-    vertices
-}
-
-impl Split {
-    /// The triangles that are folded or skinny.
-    fn broken(&self, rest: &Positions, x: &Positions) -> Vec<[VertexId; 3]> {
-        let of_folds: Vec<usize> = self.folds(x).flat_map(|e| e.triangles).collect();
-        let rows = of_folds.into_iter().chain(self.skinny(rest, x));
-        rows.map(|t| self.triangulation.triangles()[t]).collect()
+    /// Corners of all that is broken, in order.
+    fn broken_vertices(&self, x: &Positions) -> Vec<VertexId> {
+        let rows = self
+            .folds(x)
+            .flat_map(|e| e.triangles)
+            .chain(self.skinny(x));
+        let triangles = self.triangulation.triangles();
+        let mut vertices: Vec<VertexId> = rows.flat_map(|t| triangles[t]).collect();
+        vertices.sort_unstable();
+        vertices.dedup();
+        vertices
     }
 
     fn folds(&self, x: &Positions) -> impl Iterator<Item = &TriangulationEdge> {
-        let normals = normals(&self.triangulation, x);
+        let normals = normals(self.triangulation, x);
         self.edges.iter().filter(move |e| is_folded(e, &normals))
     }
 
-    fn skinny<'s>(
-        &'s self,
-        rest: &'s Positions,
-        x: &'s Positions,
-    ) -> impl Iterator<Item = usize> + 's {
-        let pairs = self
-            .triangulation
-            .corners(rest)
-            .zip(self.triangulation.corners(x));
+    fn skinny(&self, x: &Positions) -> Vec<usize> {
+        let [before, after] = [self.rest, x].map(|x| self.triangulation.corners(x));
         let is_skinny = |corners| triangle_quality(corners) < SKINNY_QUALITY;
-        pairs
+        before
+            .zip(after)
             .enumerate()
-            .filter(move |&(_, (before, after))| is_skinny(after) && !is_skinny(before))
+            .filter(|&(_, (before, after))| is_skinny(after) && !is_skinny(before))
             .map(|(t, _)| t)
+            .collect()
     }
 }
 
@@ -288,30 +260,5 @@ mod tests {
         assert!(after < 0.7 * thrown, "{after} of {thrown}");
         let moved = (0..x.len()).filter(|&i| repair.positions.as_slice()[i] != x.as_slice()[i]);
         assert!(moved.count() < x.len() / 2);
-    }
-
-    #[test]
-    fn both_diagonals_of_a_quad_are_seen() {
-        let (triangulation, rest) = sphere(8);
-        let flipped = triangulation.flipped();
-        assert_eq!(flipped.len(), triangulation.len());
-        let sorted = |t: &Triangulation| -> Vec<_> {
-            let corners = t.triangles().iter().map(|t| {
-                let mut t = *t;
-                t.sort_unstable();
-                t
-            });
-            let mut all: Vec<_> = corners.collect();
-            all.sort_unstable();
-            all
-        };
-        assert_ne!(sorted(&flipped), sorted(&triangulation));
-        assert_eq!(sorted(&flipped.flipped()), sorted(&triangulation));
-        let area = |t: &Triangulation| {
-            mesh_core::measure::triangle_areas(t, &rest)
-                .iter()
-                .sum::<f64>()
-        };
-        assert!((area(&flipped) - area(&triangulation)).abs() < 0.05 * area(&triangulation));
     }
 }
