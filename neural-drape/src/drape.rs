@@ -1,7 +1,7 @@
 //! The stepper: one engine for every parametrisation and every preset.
 
 use mesh_core::{
-    Landmark, Positions, TargetSurface, Triangulation, UnitFrame, Vector3, VertexData,
+    Landmark, Positions, TargetSurface, Triangulation, UnitFrame, Vector3, VertexData, VertexId,
 };
 use mesh_loss::{
     AreaKl, Beyond, Chamfer, Conformal, CornerAngle, Drift, Flip, FoldBarrier, HardCorners,
@@ -248,7 +248,9 @@ impl<'a> Drape<'a> {
     pub fn finish(&self) -> Repair {
         let positions = self.positions();
         if self.config.repair {
-            crate::repair(self.input.triangulation, self.input.rest, &positions)
+            let marked = self.landmarks.iter().flat_map(|l| l.source.vertices);
+            let held: Vec<VertexId> = marked.collect();
+            crate::repair(self.input.triangulation, self.input.rest, &positions, &held)
         } else {
             let defects =
                 crate::repair::defects(self.input.triangulation, self.input.rest, &positions);

@@ -46,7 +46,14 @@ impl Defects {
 /// scaled, with their surroundings held ([`LocalShape::relax`]); a patch grows until nothing in it is broken.
 ///
 /// A patch that does not get better by a small motion stays as it was. All else stays, to the bit.
-pub fn repair(triangulation: &Triangulation, rest: &Positions, x: &Positions) -> Repair {
+///
+/// The vertices of `held`, such as those of landmarks, stay where they are.
+pub fn repair(
+    triangulation: &Triangulation,
+    rest: &Positions,
+    x: &Positions,
+    held: &[VertexId],
+) -> Repair {
     let judge = Judge::new(triangulation, rest);
     let before = judge.defects(x);
     let mut positions = x.clone();
@@ -57,7 +64,8 @@ pub fn repair(triangulation: &Triangulation, rest: &Positions, x: &Positions) ->
         let reach = MAX_MOTION * Aabb::of(x).longest_side();
         for patch in neighbours.connected(&broken) {
             let mended = (0..=MAX_RINGS).find_map(|rings| {
-                let free = neighbours.grown(&patch, rings);
+                let mut free = neighbours.grown(&patch, rings);
+                free.retain(|v| !held.contains(v));
                 let mut candidate = positions.clone();
                 (0..SWEEPS).find_map(|_| {
                     shape.relax(&mut candidate, &free);
@@ -237,7 +245,7 @@ mod tests {
     fn a_shape_without_defects_stays_to_the_bit() {
         let (triangulation, rest) = sphere(8);
         let x = rest.map(|p| p * 3.0);
-        let repair = repair(&triangulation, &rest, &x);
+        let repair = repair(&triangulation, &rest, &x, &[]);
         assert_eq!(repair.positions, x);
         assert!(repair.before.is_empty() && repair.left.is_empty());
     }
@@ -250,7 +258,7 @@ mod tests {
         let [a, b] = [v, w].map(|v| triangulation.edges().iter().find(|e| e[0] == v).unwrap()[1]);
         x[v] = x[v] + (x[a] - x[v]) * 1.6;
         x[w] = x[w] + (x[b] - x[w]) * 1.6;
-        let repair = repair(&triangulation, &rest, &x);
+        let repair = repair(&triangulation, &rest, &x, &[]);
         assert!(!repair.before.is_empty());
         assert!(repair.left.is_empty(), "{:?}", repair.left);
         let true_place = rest.map(|p| p * 2.0);
