@@ -9,7 +9,7 @@ const FOLD_COSINE: f64 = -0.5;
 /// A triangle with Q_f (Eq. 4) below this is skinny.
 const SKINNY_QUALITY: f64 = 0.1;
 /// A patch grows up to this many rings around what is broken.
-const MAX_RINGS: usize = 4;
+const MAX_RINGS: usize = 8;
 /// Each size of a patch is relaxed at most this often.
 const SWEEPS: usize = 40;
 /// A patch is left as it was if mending it would move a vertex farther than this share of the longest side.
