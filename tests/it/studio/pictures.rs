@@ -33,7 +33,7 @@ fn every_state_can_be_drawn() {
     // Long enough not to end while it is looked at.
     std::fs::write(
         folder.path().join("long.toml"),
-        "[[stages]]\nn_iterations = 3000\n",
+        "[[stages]]\nn_iterations = 100000\n",
     )
     .unwrap();
     let server = Server::start(
