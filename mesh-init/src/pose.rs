@@ -5,6 +5,7 @@ use mesh_core::{
     Vector3,
 };
 use nalgebra::{Matrix3, SymmetricEigen};
+use rand::seq::SliceRandom;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
@@ -16,7 +17,7 @@ const N_COARSE: usize = 250;
 const N_FINE: usize = 1500;
 /// Steps of closest-point iteration with the coarse samples, and with the fine ones.
 const COARSE_STEPS: usize = 12;
-const FINE_STEPS: usize = 30;
+const FINE_STEPS: usize = 80;
 /// How many of the poses tried are refined.
 const N_REFINED: usize = 6;
 /// Share of the distances that counts, each way: the farthest belong to parts that the other shape lacks.
@@ -190,7 +191,9 @@ impl<'a> Scene<'a> {
         let unit: Positions = input.rest.map(|p| frames[0].to_unit(p));
         let mut rng = ChaCha8Rng::seed_from_u64(input.seed);
         let source = sample_source(input.triangulation, &unit, &mut rng);
-        let samples = input.target.sample(N_FINE, &mut rng);
+        let mut samples = input.target.sample(N_FINE, &mut rng);
+        // They come in the order of the triangles; the coarse search takes the first few.
+        samples.shuffle(&mut rng);
         let place = |s: &mesh_core::SurfaceSample| Place {
             point: frames[1].to_unit(&s.point).coords,
             normal: input.target.normal(&s.location),
