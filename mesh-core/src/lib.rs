@@ -22,6 +22,7 @@ mod ids;
 pub mod io;
 mod landmark;
 pub mod measure;
+mod rotation;
 pub mod sampling;
 pub mod shapes;
 mod soup;
@@ -36,6 +37,7 @@ pub use halfedge::{HalfedgeMesh, Pieces};
 pub use ids::{EdgeId, FaceId, HalfedgeId, Id, VertexId};
 pub use landmark::{Landmark, LandmarkKind, MeshPoint};
 pub use measure::{Aabb, UnitFrame};
+pub use rotation::nearest_rotation;
 pub use soup::PolygonSoup;
 pub use surface::{
     Location, NormalSign, PointCloud, Strays, SurfacePoint, SurfaceSample, SurfelCloud,

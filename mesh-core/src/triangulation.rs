@@ -3,7 +3,7 @@
 use spade::{ConstrainedDelaunayTriangulation, Triangulation as _};
 
 use crate::measure::triangle_quality;
-use crate::{FaceId, HalfedgeMesh, Point3, Positions, Vector3, VertexId};
+use crate::{FaceId, HalfedgeMesh, Point3, Positions, Vector3, VertexData, VertexId};
 
 /// Triangles of a polygon mesh, each with its parent face.
 ///
@@ -80,6 +80,41 @@ impl Triangulation {
         edges.sort_unstable();
         edges.dedup();
         edges
+    }
+
+    /// Each vertex's neighbours along the edges, ascending, for a mesh of `n_vertices`.
+    pub fn neighbours(&self, n_vertices: usize) -> VertexData<Vec<VertexId>> {
+        let mut neighbours = VertexData::new(n_vertices, Vec::new());
+        for [a, b] in self.edges() {
+            neighbours[a].push(b);
+            neighbours[b].push(a);
+        }
+        neighbours
+    }
+
+    /// The chosen vertices in groups that edges between chosen ones join, each ascending, in order of their first.
+    pub fn connected_groups(
+        &self,
+        n_vertices: usize,
+        is_chosen: impl Fn(VertexId) -> bool,
+    ) -> Vec<Vec<VertexId>> {
+        let neighbours = self.neighbours(n_vertices);
+        let mut is_open = neighbours.ids().map(&is_chosen).collect::<Vec<bool>>();
+        let mut groups = Vec::new();
+        for start in neighbours.ids() {
+            if !std::mem::take(&mut is_open[start.index()]) {
+                continue;
+            }
+            let (mut group, mut next) = (vec![start], 0);
+            while let Some(&v) = group.get(next) {
+                next += 1;
+                let reached = neighbours[v].iter().copied();
+                group.extend(reached.filter(|w| std::mem::take(&mut is_open[w.index()])));
+            }
+            group.sort_unstable();
+            groups.push(group);
+        }
+        groups
     }
 
     /// The edges that exactly two triangles share, diagonals of polygons included, in order of their vertices.

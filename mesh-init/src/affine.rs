@@ -312,7 +312,7 @@ fn linear_part(
 
 /// Rotation and scale nearest to the pairs: `R = U diag(1, 1, ±1) Vᵀ`, `s = tr(D Σ) / tr C`.
 fn umeyama(c: &Matrix3<f64>, b: &Matrix3<f64>) -> Matrix3<f64> {
-    let rotation = crate::rotation::nearest_rotation(b);
+    let rotation = mesh_core::nearest_rotation(b);
     let scale = (rotation.transpose() * b).trace() / c.trace();
     rotation * scale.max(MIN_SPREAD)
 }

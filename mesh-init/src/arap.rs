@@ -6,7 +6,7 @@ use nalgebra::Matrix3;
 
 use crate::cells::Cells;
 use crate::reach::held_and_unreached;
-use crate::rotation::nearest_rotation;
+use mesh_core::nearest_rotation;
 
 /// A solve ends when a step lowers the energy by less than this share of it.
 const MIN_GAIN: f64 = 1e-5;

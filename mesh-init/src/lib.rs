@@ -31,7 +31,6 @@ mod error;
 mod initialize;
 mod pose;
 mod reach;
-mod rotation;
 mod similar;
 
 pub use affine::{

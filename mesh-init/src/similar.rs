@@ -10,7 +10,7 @@ use nalgebra_sparse::CooMatrix;
 
 use crate::cells::Cells;
 use crate::reach::held_and_unreached;
-use crate::rotation::nearest_rotation;
+use mesh_core::nearest_rotation;
 
 /// A neighbourhood grows or shrinks at most this much.
 const MAX_SCALE: f64 = 3.0;

@@ -1,6 +1,6 @@
 //! Every one-ring stays a turned and scaled copy of itself.
 
-use mesh_core::{Positions, Triangulation, Vector3, VertexData, VertexId};
+use mesh_core::{nearest_rotation, Positions, Triangulation, Vector3, VertexData, VertexId};
 use nalgebra::Matrix3;
 
 use crate::Loss;
@@ -90,7 +90,7 @@ impl LocalShape {
             let e = x[self.neighbours[k] as usize] - x[i];
             covariance += (e * self.weights[k]) * self.rest[k].transpose();
         }
-        let rotation = closest_rotation(&covariance);
+        let rotation = nearest_rotation(&covariance);
         let scale = rotation.dot(&covariance) / self.rest_square[i].max(f64::MIN_POSITIVE);
         rotation * scale
     }
@@ -114,7 +114,7 @@ impl Loss for LocalShape {
                 continue;
             }
             // max over R of tr(Rᵀ C) = c; then the minimum over s is 1 − c² / (Σ|e|² Σ|r|²).
-            let rotation = closest_rotation(&covariance);
+            let rotation = nearest_rotation(&covariance);
             let c = rotation.dot(&covariance);
             let fit = c / (square * self.rest_square[i]);
             sum += 1.0 - c * fit;
@@ -129,70 +129,5 @@ impl Loss for LocalShape {
             }
         }
         sum * share
-    }
-}
-
-/// The rotation R that makes tr(Rᵀ C) largest, from the two larger singular vectors of C.
-fn closest_rotation(c: &Matrix3<f64>) -> Matrix3<f64> {
-    let (v1, v2) = larger_eigenvectors(c.transpose() * c);
-    let (c1, c2) = (c * v1, c * v2);
-    let Some(u1) = c1.try_normalize(f64::MIN_POSITIVE) else {
-        return Matrix3::identity();
-    };
-    let Some(u2) = (c2 - u1 * u1.dot(&c2)).try_normalize(f64::MIN_POSITIVE) else {
-        return Matrix3::identity();
-    };
-    u1 * v1.transpose() + u2 * v2.transpose() + u1.cross(&u2) * v1.cross(&v2).transpose()
-}
-
-/// Unit eigenvectors of the two larger eigenvalues of a symmetric matrix, by Jacobi rotations.
-fn larger_eigenvectors(mut a: Matrix3<f64>) -> (Vector3, Vector3) {
-    let mut v = Matrix3::identity();
-    let size = a.norm_squared();
-    for _ in 0..8 {
-        for (p, q) in [(0, 1), (0, 2), (1, 2)] {
-            if a[(p, q)] * a[(p, q)] <= 1e-32 * size {
-                continue;
-            }
-            let theta = 0.5 * (a[(q, q)] - a[(p, p)]) / a[(p, q)];
-            let t = theta.signum() / (theta.abs() + (theta * theta + 1.0).sqrt());
-            let cos = 1.0 / (t * t + 1.0).sqrt();
-            let sin = t * cos;
-            rotate(&mut a, &mut v, (p, q), (cos, sin));
-        }
-        let off = a[(0, 1)].powi(2) + a[(0, 2)].powi(2) + a[(1, 2)].powi(2);
-        if off <= 1e-31 * size {
-            break;
-        }
-    }
-    let smallest = (0..3).fold(0, |s, k| if a[(k, k)] < a[(s, s)] { k } else { s });
-    let (k, l) = ((smallest + 1) % 3, (smallest + 2) % 3);
-    let (large, small) = if a[(k, k)] >= a[(l, l)] {
-        (k, l)
-    } else {
-        (l, k)
-    };
-    (v.column(large).into(), v.column(small).into())
-}
-
-/// `a ← Jᵀ a J`, `v ← v J` for a rotation J in the plane (p, q).
-fn rotate(
-    a: &mut Matrix3<f64>,
-    v: &mut Matrix3<f64>,
-    (p, q): (usize, usize),
-    (cos, sin): (f64, f64),
-) {
-    for k in 0..3 {
-        let (kp, kq) = (a[(k, p)], a[(k, q)]);
-        a[(k, p)] = cos * kp - sin * kq;
-        a[(k, q)] = sin * kp + cos * kq;
-    }
-    for k in 0..3 {
-        let (pk, qk) = (a[(p, k)], a[(q, k)]);
-        a[(p, k)] = cos * pk - sin * qk;
-        a[(q, k)] = sin * pk + cos * qk;
-        let (kp, kq) = (v[(k, p)], v[(k, q)]);
-        v[(k, p)] = cos * kp - sin * kq;
-        v[(k, q)] = sin * kp + cos * kq;
     }
 }

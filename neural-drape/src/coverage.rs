@@ -1,8 +1,19 @@
-//! Which parts of the source have no counterpart on the target, seen from the initial shape.
+//! Which parts of either shape have no counterpart on the other, seen from the initial shape.
 
 use mesh_core::{
     Point3, Positions, TargetSurface, TriangleBvh, Triangulation, UnitFrame, VertexData, VertexId,
 };
+use mesh_loss::{Beyond, Overlap};
+
+use crate::config::OverlapMode;
+use crate::DrapeInput;
+
+/// Random places on each shape that tell how far it reaches beyond the other.
+pub(crate) const N_BEYOND: usize = 4000;
+/// A place counts as beyond when it is farther from the other's boundary than this share of the longest side.
+pub(crate) const FAR_BEYOND: f64 = 0.03;
+/// A shape of which less than this share lies beyond is taken as whole.
+const LEAST_BEYOND: f64 = 0.05;
 
 /// A vertex has no counterpart when it is this far from the target, and the way there and back ends this far from it,
 /// in longest sides. Where shapes cover each other, the initial deformations of the test pairs come to 0.12 at most.
@@ -10,13 +21,56 @@ const FAR: f64 = 0.15;
 /// From there the part spreads along the surface to where both are below this.
 const NEAR: f64 = 0.04;
 
+impl OverlapMode {
+    /// Which parts beyond are left out.
+    pub(crate) fn resolved(self, beyond: &Beyond) -> Overlap {
+        let (target_exceeds, mesh_exceeds) = match self {
+            OverlapMode::Auto => (
+                beyond.of_target > LEAST_BEYOND,
+                beyond.of_mesh > LEAST_BEYOND,
+            ),
+            OverlapMode::Full => (false, false),
+            OverlapMode::SourcePartial => (true, false),
+            OverlapMode::TargetPartial => (false, true),
+            OverlapMode::BothPartial => (true, true),
+        };
+        Overlap {
+            target_exceeds,
+            mesh_exceeds,
+        }
+    }
+}
+
+/// Marks what the target lacks, where the settings let parts be left out and it is enough; `beyond` counts it.
+pub(crate) fn lacking(
+    input: &DrapeInput<'_>,
+    initial: &Positions,
+    frame: &UnitFrame,
+    mode: OverlapMode,
+    beyond: &mut Beyond,
+) -> VertexData<bool> {
+    let nothing = VertexData::new(initial.len(), false);
+    if matches!(mode, OverlapMode::Full | OverlapMode::SourcePartial) {
+        return nothing;
+    }
+    let least = if mode == OverlapMode::Auto {
+        LEAST_BEYOND
+    } else {
+        0.0
+    };
+    let lacking = uncovered(input.triangulation, initial, input.target, frame, least);
+    let share = area_share(input.triangulation, initial, &lacking);
+    beyond.of_mesh = beyond.of_mesh.max(share);
+    lacking
+}
+
 /// Marks the vertices of the mesh at `x` (in `frame`) that the target does not cover: shoulders over a bust that ends
 /// at the neck.
 ///
 /// A way to the closest point of the target and from there to the closest point of the mesh comes back near its start
 /// where the shapes cover each other, and far from it where one ends: all places beyond lead to its last. Where what is
 /// surely beyond makes up less than the share `least` of the area, nothing is marked.
-pub(crate) fn uncovered(
+fn uncovered(
     triangulation: &Triangulation,
     x: &Positions,
     target: &dyn TargetSurface,
@@ -41,11 +95,7 @@ pub(crate) fn uncovered(
     };
 
     let mut is_uncovered = VertexData::new(x.len(), false);
-    let mut neighbours = VertexData::new(x.len(), Vec::new());
-    for [a, b] in triangulation.edges() {
-        neighbours[a].push(b);
-        neighbours[b].push(a);
-    }
+    let neighbours = triangulation.neighbours(x.len());
     let mut stack: Vec<VertexId> = x
         .ids()
         .filter(|&v| !neighbours[v].is_empty() && missed(v, FAR))
@@ -66,11 +116,7 @@ pub(crate) fn uncovered(
 }
 
 /// Share of the surface area at `x` that belongs to the marked vertices.
-pub(crate) fn area_share(
-    triangulation: &Triangulation,
-    x: &Positions,
-    is_marked: &VertexData<bool>,
-) -> f64 {
+fn area_share(triangulation: &Triangulation, x: &Positions, is_marked: &VertexData<bool>) -> f64 {
     let (mut marked, mut total) = (0.0, 0.0);
     for (t, corners) in triangulation
         .triangles()

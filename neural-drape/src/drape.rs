@@ -4,27 +4,19 @@ use mesh_core::{
     Landmark, Positions, TargetSurface, Triangulation, UnitFrame, Vector3, VertexData, VertexId,
 };
 use mesh_loss::{
-    AreaKl, Beyond, Chamfer, Conformal, CornerAngle, Drift, Flip, FoldBarrier, HardCorners,
-    LandmarkDistance, LocalShape, Loss, Matches, NormalAgreement, Overlap, SurfaceMatcher,
-    TriangleQuality, WorstDistance,
+    Beyond, Chamfer, HardCorners, LandmarkDistance, Matches, NormalAgreement, Overlap,
+    SurfaceMatcher, WorstDistance,
 };
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
-use crate::config::{
-    AngleReference, Descent, DrapeConfig, OverlapMode, ParametrizationConfig, Stage, Weights,
-};
-use crate::coverage::{area_share, uncovered};
+use crate::config::{Descent, DrapeConfig, ParametrizationConfig, Stage, Weights};
+use crate::coverage::{lacking, FAR_BEYOND, N_BEYOND};
 use crate::network::{Network, NetworkMap};
 use crate::regions::{Follow, Guidance, Regions};
+use crate::terms::{accumulate, Structure, Term, TermReport};
 use crate::{DrapeError, DrapeState, Parametrization, Repair, Vertices};
 
-/// Random places on each shape that tell how far it reaches beyond the other.
-const N_BEYOND: usize = 4000;
-/// A place counts as beyond when it is farther from the other's boundary than this share of the longest side.
-const FAR_BEYOND: f64 = 0.03;
-/// A shape of which less than this share lies beyond is taken as whole.
-const LEAST_BEYOND: f64 = 0.05;
 /// So many times in a run, parts that nothing attracts follow the rest.
 const N_FOLLOWS: usize = 5;
 
@@ -41,17 +33,6 @@ pub struct DrapeInput<'a> {
     pub target: &'a dyn TargetSurface,
     /// Places that belong together.
     pub landmarks: &'a [Landmark],
-}
-
-/// One term of the loss in one iteration.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct TermReport {
-    /// The term.
-    pub name: &'static str,
-    /// Its value, unweighted.
-    pub value: f64,
-    /// Its weight.
-    pub weight: f64,
 }
 
 /// What one iteration did.
@@ -87,18 +68,6 @@ pub struct Drape<'a> {
     rng: ChaCha8Rng,
 }
 
-/// The terms that depend on the mesh alone.
-struct Structure<'a> {
-    corner_angle: CornerAngle<'a>,
-    area_kl: AreaKl<'a>,
-    triangle_quality: TriangleQuality<'a>,
-    flip: Flip<'a>,
-    fold_barrier: FoldBarrier<'a>,
-    conformal: Conformal<'a>,
-    local_shape: LocalShape,
-    drift: Drift,
-}
-
 impl<'a> Drape<'a> {
     /// A drape at its start: [`Self::positions`] are the initial ones.
     ///
@@ -120,7 +89,7 @@ impl<'a> Drape<'a> {
         let mut rng = ChaCha8Rng::seed_from_u64(config.seed);
         let mut matcher = SurfaceMatcher::new(input.triangulation, &initial, input.target, frame);
         let mut beyond = matcher.beyond(&initial, N_BEYOND, FAR_BEYOND, &mut rng);
-        let overlap = overlap(config.overlap, &beyond);
+        let overlap = config.overlap.resolved(&beyond);
         let is_uncovered = lacking(&input, &initial, &frame, config.overlap, &mut beyond);
         let none = Regions::none(initial.len());
         let guidance = Guidance::new(
@@ -186,7 +155,11 @@ impl<'a> Drape<'a> {
         if self.config.descent == Descent::Alternating {
             self.descend(rate)?;
         }
-        terms.extend(self.add_structural_terms(&weights));
+        terms.extend(accumulate(
+            &self.structure.terms(&weights),
+            self.parametrization.positions(),
+            &mut self.gradient,
+        ));
         self.descend(rate)?;
 
         self.iteration += 1;
@@ -339,7 +312,7 @@ impl<'a> Drape<'a> {
             let hard = self.matcher.hard_corners();
             state.counts(&hard.of_mesh);
             state.counts(&hard.of_target);
-            state.points(self.structure.drift.reference());
+            state.points(self.structure.anchored_at());
             self.parametrization.save(state);
         })
     }
@@ -364,7 +337,7 @@ impl<'a> Drape<'a> {
         if !self.matcher.set_hard_corners(hard) {
             return Err(DrapeError::ForeignState);
         }
-        let mut anchor = self.structure.drift.reference().clone();
+        let mut anchor = self.structure.anchored_at().clone();
         reader.points(anchor.iter_mut())?;
         self.structure.anchor(self.input.triangulation, &anchor);
         self.parametrization.restore(&mut reader)?;
@@ -434,111 +407,6 @@ impl<'a> Drape<'a> {
             ("landmarks", w.landmark, &LandmarkDistance(&self.landmarks)),
         ];
         accumulate(&terms, self.parametrization.positions(), &mut self.gradient)
-    }
-
-    /// Eq. 3 and its companions.
-    fn add_structural_terms(&mut self, w: &Weights) -> Vec<TermReport> {
-        let s = &self.structure;
-        let terms: [Term<'_>; 8] = [
-            ("angles", w.corner_angle, &s.corner_angle),
-            ("areas", w.area_kl, &s.area_kl),
-            ("skinny", w.triangle_quality, &s.triangle_quality),
-            ("flips", w.flip, &s.flip),
-            ("folds", w.fold_barrier, &s.fold_barrier),
-            ("conformal", w.conformal, &s.conformal),
-            ("local shape", w.local_shape, &s.local_shape),
-            ("drift", w.drift, &s.drift),
-        ];
-        accumulate(&terms, self.parametrization.positions(), &mut self.gradient)
-    }
-}
-
-type Term<'t> = (&'static str, f64, &'t dyn Loss);
-
-/// Adds every term that counts and reports it.
-fn accumulate(
-    terms: &[Term<'_>],
-    x: &Positions,
-    gradient: &mut VertexData<Vector3>,
-) -> Vec<TermReport> {
-    terms
-        .iter()
-        .filter(|(_, weight, _)| *weight > 0.0)
-        .map(|&(name, weight, loss)| TermReport {
-            name,
-            value: loss.accumulate(x, weight, gradient),
-            weight,
-        })
-        .collect()
-}
-
-impl<'a> Structure<'a> {
-    fn new(input: &DrapeInput<'a>, initial: &Positions, config: &DrapeConfig) -> Self {
-        let t = input.triangulation;
-        let angles = match config.angle_reference {
-            AngleReference::Rest => input.rest,
-            AngleReference::Initial => initial,
-        };
-        Self {
-            corner_angle: CornerAngle::new(t, angles),
-            area_kl: AreaKl::new(t, input.rest),
-            triangle_quality: TriangleQuality {
-                triangulation: t,
-                threshold: config.skinny_threshold,
-            },
-            flip: Flip::new(t, initial),
-            fold_barrier: FoldBarrier::new(t, input.rest, config.fold_limit),
-            conformal: Conformal::new(t, input.rest),
-            local_shape: LocalShape::new(t, input.rest),
-            drift: Drift::new(t, initial),
-        }
-    }
-}
-
-/// Marks what the target lacks, where the settings let parts be left out and it is enough; `beyond` counts it.
-fn lacking(
-    input: &DrapeInput<'_>,
-    initial: &Positions,
-    frame: &UnitFrame,
-    mode: OverlapMode,
-    beyond: &mut Beyond,
-) -> VertexData<bool> {
-    let nothing = VertexData::new(initial.len(), false);
-    if matches!(mode, OverlapMode::Full | OverlapMode::SourcePartial) {
-        return nothing;
-    }
-    let least = if mode == OverlapMode::Auto {
-        LEAST_BEYOND
-    } else {
-        0.0
-    };
-    let lacking = uncovered(input.triangulation, initial, input.target, frame, least);
-    let share = area_share(input.triangulation, initial, &lacking);
-    beyond.of_mesh = beyond.of_mesh.max(share);
-    lacking
-}
-
-impl Structure<'_> {
-    /// From here on, `x` is where vertices should not slide away from.
-    fn anchor(&mut self, triangulation: &Triangulation, x: &Positions) {
-        self.drift = Drift::new(triangulation, x);
-    }
-}
-
-fn overlap(mode: OverlapMode, beyond: &Beyond) -> Overlap {
-    let (target_exceeds, mesh_exceeds) = match mode {
-        OverlapMode::Auto => (
-            beyond.of_target > LEAST_BEYOND,
-            beyond.of_mesh > LEAST_BEYOND,
-        ),
-        OverlapMode::Full => (false, false),
-        OverlapMode::SourcePartial => (true, false),
-        OverlapMode::TargetPartial => (false, true),
-        OverlapMode::BothPartial => (true, true),
-    };
-    Overlap {
-        target_exceeds,
-        mesh_exceeds,
     }
 }
 

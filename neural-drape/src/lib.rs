@@ -23,6 +23,7 @@ mod regions;
 mod repair;
 mod state;
 mod studies;
+mod terms;
 mod vertices;
 mod warp;
 
@@ -30,11 +31,12 @@ pub use config::{
     AngleReference, Descent, DrapeConfig, LearningRate, OverlapMode, ParametrizationConfig,
     Sampling, Stage, Weights,
 };
-pub use drape::{Drape, DrapeInput, StepReport, TermReport};
+pub use drape::{Drape, DrapeInput, StepReport};
 pub use error::DrapeError;
 pub use parametrization::Parametrization;
 pub use regions::Regions;
 pub use repair::{repair, Defects, Repair};
 pub use state::{DrapeState, StateReader, StateWriter};
+pub use terms::TermReport;
 pub use vertices::{Vertices, VerticesConfig};
 pub use warp::{Warp, WarpError, WarpInput};

@@ -1,7 +1,9 @@
 //! Parts of the source that are not draped like the rest: free ones, rigid ones, and those the target lacks.
 
 use mesh_core::measure::triangle_normal;
-use mesh_core::{Positions, TriangleBvh, Triangulation, Vector3, VertexData, VertexId};
+use mesh_core::{
+    nearest_rotation, Positions, TriangleBvh, Triangulation, Vector3, VertexData, VertexId,
+};
 use mesh_loss::{Matches, SurfaceMatch};
 use mesh_operators::{
     bilaplacian, cotan_laplacian, voronoi_mass, FixedSolve, FixedSolveScratch, SpaceExtension,
@@ -123,14 +125,16 @@ impl Guidance {
                 }
             })
             .collect();
-        let bodies = groups(triangulation, n, |v| regions.rigid[v])
+        let bodies = triangulation
+            .connected_groups(n, |v| regions.rigid[v])
             .into_iter()
             .filter(|group| group.len() > 1)
             .map(|vertices| Body::new(vertices, rest, initial))
             .collect();
         let is_passive = |v: &VertexId| regions.attraction[*v] == 0.0 || regions.rigid[*v];
         let is_faced = faced(triangulation, n);
-        let mut carried: Vec<VertexId> = groups(triangulation, n, |v| is_faced[v])
+        let mut carried: Vec<VertexId> = triangulation
+            .connected_groups(n, |v| is_faced[v])
             .into_iter()
             .filter(|piece| piece.iter().all(is_passive))
             .flatten()
@@ -263,7 +267,8 @@ impl Guidance {
         let mut is_led = VertexData::new(x.len(), false);
         self.led.iter().for_each(|&v| is_led[v] = true);
         let is_rim = rim(triangulation, x.len());
-        let loose = groups(triangulation, x.len(), |v| is_led[v] && is_loose(v))
+        let loose = triangulation
+            .connected_groups(x.len(), |v| is_led[v] && is_loose(v))
             .into_iter()
             .filter(|part| !part.iter().any(|&v| is_rim[v]))
             .flatten()
@@ -319,7 +324,7 @@ impl Body {
         let shape = centred(&vertices, rest).1;
         let now = centred(&vertices, initial).1;
         let spread = |shape: &[Vector3]| shape.iter().map(Vector3::norm_squared).sum::<f64>();
-        let turned = nearest_rotation(&shape, &now);
+        let turned = turn(&shape, &now);
         let fitted: f64 = shape
             .iter()
             .zip(&now)
@@ -339,7 +344,7 @@ impl Body {
     /// Puts the shape where its vertices are, turned as they are.
     fn straighten(&self, x: &mut Positions) {
         let (centre, now) = centred(&self.vertices, x);
-        let rotation = nearest_rotation(&self.shape, &now);
+        let rotation = turn(&self.shape, &now);
         for (&v, p) in self.vertices.iter().zip(&self.shape) {
             x[v] = (centre + rotation * p).into();
         }
@@ -352,20 +357,10 @@ fn centred(vertices: &[VertexId], x: &Positions) -> (Vector3, Vec<Vector3>) {
     (centre, around)
 }
 
-/// The rotation that brings `from` nearest to `to`: `U diag(1, 1, det U Vᵀ) Vᵀ` (Kabsch 1976).
-fn nearest_rotation(from: &[Vector3], to: &[Vector3]) -> Matrix3<f64> {
+/// The rotation that brings `from` nearest to `to`.
+fn turn(from: &[Vector3], to: &[Vector3]) -> Matrix3<f64> {
     let pairs = from.iter().zip(to);
-    let svd = pairs
-        .map(|(a, b)| b * a.transpose())
-        .sum::<Matrix3<f64>>()
-        .svd(true, true);
-    let (Some(mut u), Some(v_t)) = (svd.u, svd.v_t) else {
-        return Matrix3::identity();
-    };
-    if (u * v_t).determinant() < 0.0 {
-        u.column_mut(svd.singular_values.imin()).neg_mut();
-    }
-    u * v_t
+    nearest_rotation(&pairs.map(|(a, b)| b * a.transpose()).sum())
 }
 
 /// Which vertices lie on an open boundary.
@@ -391,39 +386,4 @@ fn faced(triangulation: &Triangulation, n: usize) -> VertexData<bool> {
         is_faced[v] = true;
     }
     is_faced
-}
-
-/// The chosen vertices in groups that edges between chosen ones join, each ascending, in order of their first.
-fn groups(
-    triangulation: &Triangulation,
-    n: usize,
-    is_chosen: impl Fn(VertexId) -> bool,
-) -> Vec<Vec<VertexId>> {
-    let mut neighbours = VertexData::new(n, Vec::new());
-    for [a, b] in triangulation.edges() {
-        if is_chosen(a) && is_chosen(b) {
-            neighbours[a].push(b);
-            neighbours[b].push(a);
-        }
-    }
-    let mut is_seen = VertexData::new(n, false);
-    let mut groups = Vec::new();
-    for start in neighbours.ids().filter(|&v| is_chosen(v)) {
-        if std::mem::replace(&mut is_seen[start], true) {
-            continue;
-        }
-        let mut group = vec![start];
-        let mut next = 0;
-        while let Some(&v) = group.get(next) {
-            next += 1;
-            for &w in &neighbours[v] {
-                if !std::mem::replace(&mut is_seen[w], true) {
-                    group.push(w);
-                }
-            }
-        }
-        group.sort_unstable();
-        groups.push(group);
-    }
-    groups
 }

@@ -1,7 +1,7 @@
 //! The last stage: no new fold, no new skinny triangle.
 
 use mesh_core::measure::{triangle_normal, triangle_quality};
-use mesh_core::{Aabb, Positions, Triangulation, TriangulationEdge, Vector3, VertexId};
+use mesh_core::{Aabb, Positions, Triangulation, TriangulationEdge, Vector3, VertexData, VertexId};
 use mesh_loss::LocalShape;
 
 /// An edge is folded when the normals of its triangles have a dot product below this.
@@ -60,11 +60,13 @@ pub fn repair(
     let mut broken = judge.broken_vertices(x);
     if !broken.is_empty() {
         let shape = LocalShape::new(triangulation, rest);
-        let neighbours = Neighbours::new(triangulation, x.len());
+        let neighbours = triangulation.neighbours(x.len());
+        let is_broken = |v: VertexId| broken.binary_search(&v).is_ok();
+        let patches = triangulation.connected_groups(x.len(), is_broken);
         let reach = MAX_MOTION * Aabb::of(x).longest_side();
-        for patch in neighbours.connected(&broken) {
+        for patch in patches {
             let mended = (0..=MAX_RINGS).find_map(|rings| {
-                let mut free = neighbours.grown(&patch, rings);
+                let mut free = grown(&neighbours, &patch, rings);
                 free.retain(|v| !held.contains(v));
                 let mut candidate = positions.clone();
                 (0..SWEEPS).find_map(|_| {
@@ -174,60 +176,24 @@ fn is_folded(edge: &TriangulationEdge, normals: &[Vector3]) -> bool {
     one.dot(&two) < FOLD_COSINE
 }
 
-/// The one-rings of a mesh.
-struct Neighbours {
-    starts: Vec<usize>,
-    rows: Vec<VertexId>,
-}
-
-impl Neighbours {
-    fn new(triangulation: &Triangulation, n_vertices: usize) -> Self {
-        let edges = triangulation.edges();
-        let mut sides: Vec<[VertexId; 2]> =
-            edges.iter().flat_map(|&[a, b]| [[a, b], [b, a]]).collect();
-        sides.sort_unstable();
-        let first = |i: usize| sides.partition_point(|side| side[0].index() < i);
-        Self {
-            starts: (0..=n_vertices).map(first).collect(),
-            rows: sides.iter().map(|side| side[1]).collect(),
-        }
+/// The vertices within `rings` edges of `patch`, in order.
+fn grown(
+    neighbours: &VertexData<Vec<VertexId>>,
+    patch: &[VertexId],
+    rings: usize,
+) -> Vec<VertexId> {
+    let mut grown = patch.to_vec();
+    for _ in 0..rings {
+        let around: Vec<VertexId> = grown
+            .iter()
+            .flat_map(|&v| &neighbours[v])
+            .copied()
+            .collect();
+        grown.extend(around);
+        grown.sort_unstable();
+        grown.dedup();
     }
-
-    fn of(&self, v: VertexId) -> &[VertexId] {
-        &self.rows[self.starts[v.index()]..self.starts[v.index() + 1]]
-    }
-
-    /// The vertices within `rings` edges of `patch`, in order.
-    fn grown(&self, patch: &[VertexId], rings: usize) -> Vec<VertexId> {
-        let mut grown = patch.to_vec();
-        for _ in 0..rings {
-            let around: Vec<VertexId> = grown.iter().flat_map(|&v| self.of(v)).copied().collect();
-            grown.extend(around);
-            grown.sort_unstable();
-            grown.dedup();
-        }
-        grown
-    }
-
-    /// The connected parts of `vertices`, each in order.
-    fn connected(&self, vertices: &[VertexId]) -> Vec<Vec<VertexId>> {
-        let mut rest: Vec<VertexId> = vertices.to_vec();
-        let mut parts = Vec::new();
-        while let Some(&seed) = rest.first() {
-            let mut part = vec![seed];
-            loop {
-                let mut larger = self.grown(&part, 1);
-                larger.retain(|v| rest.binary_search(v).is_ok());
-                if larger.len() == part.len() {
-                    break;
-                }
-                part = larger;
-            }
-            rest.retain(|v| part.binary_search(v).is_err());
-            parts.push(part);
-        }
-        parts
-    }
+    grown
 }
 
 #[cfg(test)]

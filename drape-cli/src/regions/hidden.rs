@@ -1,7 +1,7 @@
 //! Inner surfaces: what no ray from outside reaches.
 
 use mesh_core::surface::is_exposed;
-use mesh_core::{measure, TriangleBvh, Triangulation, VertexData, VertexId};
+use mesh_core::{measure, TriangleBvh, VertexData, VertexId};
 use neural_drape::Regions;
 
 use super::{bvh, pieces};
@@ -66,7 +66,10 @@ pub(crate) fn inner_surfaces(source: &Source) -> Vec<Inner> {
         }
     }
     let is_inside = |v: VertexId| !is_taken[v] && own[v] > 0.0 && hidden[v] == own[v];
-    for vertices in connected(source, is_inside) {
+    let inside = source
+        .triangulation
+        .connected_groups(source.mesh.n_vertices(), is_inside);
+    for vertices in inside {
         let share = vertices.iter().map(|&v| own[v]).sum::<f64>() / total;
         if share >= LEAST_SHARE {
             found.push(Inner {
@@ -152,35 +155,4 @@ fn hidden_share(pair: &Pair) -> f64 {
 
 fn seen_triangles(source: &Source) -> Vec<bool> {
     is_exposed(&bvh(source), N_RAYS)
-}
-
-/// Chosen vertices in groups that edges join, each ascending.
-fn connected(source: &Source, is_chosen: impl Fn(VertexId) -> bool) -> Vec<Vec<VertexId>> {
-    let triangulation: &Triangulation = &source.triangulation;
-    let mut neighbours = VertexData::new(source.mesh.n_vertices(), Vec::new());
-    for [a, b] in triangulation.edges() {
-        if is_chosen(a) && is_chosen(b) {
-            neighbours[a].push(b);
-            neighbours[b].push(a);
-        }
-    }
-    let mut is_seen = VertexData::new(neighbours.len(), false);
-    let mut groups = Vec::new();
-    for start in neighbours.ids().filter(|&v| is_chosen(v)) {
-        if std::mem::replace(&mut is_seen[start], true) {
-            continue;
-        }
-        let (mut group, mut next) = (vec![start], 0);
-        while let Some(&v) = group.get(next) {
-            next += 1;
-            for &w in &neighbours[v] {
-                if !std::mem::replace(&mut is_seen[w], true) {
-                    group.push(w);
-                }
-            }
-        }
-        group.sort_unstable();
-        groups.push(group);
-    }
-    groups
 }

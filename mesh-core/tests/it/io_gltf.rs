@@ -7,7 +7,7 @@ use base64::Engine;
 use mesh_core::io::{Format, MeshFile, WriteError};
 use mesh_core::{Point3, Positions, Vector3};
 
-use crate::io_support::{bent, file, refusal, rest, written};
+use crate::io_support::{bent, file, glb_file, refusal, rest, written};
 
 /// A square of two triangles whose diagonal is a seam (interleaved: position, normal, tangent, uv), one triangle with
 /// normalised uvs and sparse positions, under nodes that turn, scale and shift.
@@ -80,20 +80,7 @@ pub(crate) fn data_uri() -> String {
 }
 
 fn glb_of(json: &str) -> Vec<u8> {
-    let mut json = json.to_owned().into_bytes();
-    json.resize(json.len().next_multiple_of(4), b' ');
-    let buffer = buffer();
-    let mut out = b"glTF".to_vec();
-    let length = 12 + 8 + json.len() + 8 + buffer.len();
-    for n in [2, length as u32, json.len() as u32] {
-        out.extend(n.to_le_bytes());
-    }
-    out.extend(b"JSON");
-    out.extend(&json);
-    out.extend((buffer.len() as u32).to_le_bytes());
-    out.extend(b"BIN\0");
-    out.extend(buffer);
-    out
+    glb_file(json, &buffer())
 }
 
 pub(crate) fn glb() -> Vec<u8> {

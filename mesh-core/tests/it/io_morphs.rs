@@ -5,7 +5,7 @@
 use mesh_core::io::{MeshFile, Morphs, WriteError};
 use mesh_core::{Point3, Positions, Vector3};
 
-use crate::io_support::{file, rest, written};
+use crate::io_support::{file, glb_file, rest, written};
 
 /// A square of two triangles, split along its diagonal, under a node that doubles and shifts it. Its first morph target
 /// lifts the corners and leans their normals; its second moves one corner, by a sparse accessor.
@@ -59,19 +59,7 @@ pub(crate) fn glb() -> Vec<u8> {
 }
 
 fn glb_of(json: &str) -> Vec<u8> {
-    let mut json = json.to_owned().into_bytes();
-    json.resize(json.len().next_multiple_of(4), b' ');
-    let buffer = buffer();
-    let mut out = b"glTF".to_vec();
-    for n in [2, 28 + json.len() + buffer.len(), json.len()] {
-        out.extend((n as u32).to_le_bytes());
-    }
-    out.extend(b"JSON");
-    out.extend(&json);
-    out.extend((buffer.len() as u32).to_le_bytes());
-    out.extend(b"BIN\0");
-    out.extend(buffer);
-    out
+    glb_file(json, &buffer())
 }
 
 fn document(glb: &[u8]) -> String {

@@ -62,3 +62,19 @@ pub(crate) fn check_round_trip(name: &str, bytes: &[u8]) {
     let back = file(name, written(&moved, &rest(&read)));
     assert_eq!(back.soup(), read.soup(), "{name} moved back");
 }
+
+/// A GLB file of a JSON chunk and one buffer.
+pub(crate) fn glb_file(json: &str, buffer: &[u8]) -> Vec<u8> {
+    let mut json = json.to_owned().into_bytes();
+    json.resize(json.len().next_multiple_of(4), b' ');
+    let mut out = b"glTF".to_vec();
+    for n in [2, 28 + json.len() + buffer.len(), json.len()] {
+        out.extend((n as u32).to_le_bytes());
+    }
+    out.extend(b"JSON");
+    out.extend(&json);
+    out.extend((buffer.len() as u32).to_le_bytes());
+    out.extend(b"BIN\0");
+    out.extend(buffer);
+    out
+}

@@ -1,139 +1,38 @@
-//! How a source stands in the target's coordinates, found without landmarks or with one or two.
+//! Two surfaces that are brought nearest to each other by closest-point iteration.
 
+use mesh_core::sampling::{TrianglePlace, TriangleSampler};
 use mesh_core::{
-    Location, NormalSign, Point3, Positions, TargetSurface, TriangleBvh, Triangulation, UnitFrame,
-    Vector3,
+    Location, NormalSign, Positions, TargetSurface, TriangleBvh, Triangulation, UnitFrame, Vector3,
 };
 use nalgebra::{Matrix3, SymmetricEigen};
 use rand::seq::SliceRandom;
-use rand::{Rng, SeedableRng};
+use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
-use rayon::prelude::*;
 
+use super::PoseInput;
 use crate::affine::{least_squares, PointPair, WeightedPair};
 
-/// Samples of each surface while all poses are tried, and at the end.
-const N_COARSE: usize = 250;
-const N_FINE: usize = 1500;
-/// Steps of closest-point iteration with the coarse samples, and with the fine ones.
-const COARSE_STEPS: usize = 12;
-const FINE_STEPS: usize = 80;
-/// How many of the poses tried are refined.
-const N_REFINED: usize = 6;
+/// Samples of each surface.
+pub(super) const N_FINE: usize = 1500;
 /// Share of the distances that counts, each way: the farthest belong to parts that the other shape lacks.
 const TRIMMED: f64 = 0.85;
 /// A pair whose normals oppose costs as much more as one this far apart, in longest sides of the target's box.
 const NORMAL_COST: f64 = 0.05;
 /// How near the last, affine map stays to a similarity: squared length in boxes of longest side 1.
 const AFFINE_PRIOR: f64 = 0.02;
-/// Poses that turn the source by less than this (25°) from each other are one.
-const SAME_TURN: f64 = 0.436;
-/// Another pose whose cost is below this many times that of the best makes it ambiguous.
-const NEARLY_AS_GOOD: f64 = 1.25;
-/// A pose near the way the files stand is taken if its cost is below this many times that of the best.
-const AS_GOOD: f64 = 1.1;
-/// Costs that differ by less than this, in longest sides, are equal: samples tell no better.
-const TIE: f64 = 0.002;
 /// A landmark counts as much as this share of the samples.
 const LANDMARK_SHARE: f64 = 0.25;
 
-/// What a pose is found from.
-#[derive(Clone, Copy)]
-pub struct PoseInput<'a> {
-    /// The source's polygons as triangles.
-    pub triangulation: &'a Triangulation,
-    /// The source's shape.
-    pub rest: &'a Positions,
-    /// The shape to bring it to.
-    pub target: &'a dyn TargetSurface,
-    /// Places that belong together, if any are known.
-    pub landmarks: &'a [PointPair],
-    /// Seed of the samples.
-    pub seed: u64,
-}
-
-/// A map of the source into the target's coordinates: `p ↦ matrix · p + translation`.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Pose {
-    /// Rotation, scale and a little stretch.
-    pub matrix: Matrix3<f64>,
-    /// Where the origin goes.
-    pub translation: Vector3,
-    /// Trimmed mean distance between the surfaces, both ways, with what opposing normals cost; in longest sides of the
-    /// target's box.
-    pub cost: f64,
-    /// By how much the source turns, in degrees, from the way its file stands.
-    pub turn_deg: f64,
-    /// The best pose that turns the source otherwise, where it is nearly as good: by how many degrees it differs, and
-    /// its cost.
-    pub rival: Option<(f64, f64)>,
-}
-
-impl Pose {
-    /// Where the map takes `p`.
-    pub fn apply(&self, p: &Point3) -> Point3 {
-        Point3::from(self.matrix * p.coords + self.translation)
-    }
-}
-
-/// The pose in which the surfaces lie nearest to each other; none where either has no extent.
-///
-/// Tried are the rotations that lay the principal axes over each other and those that turn the axes of the files into
-/// each other, 24 of each. Each is refined by a trimmed closest-point iteration over similarities, both ways; the best few
-/// with more samples and then over affine maps. Never mirrors. Of poses that are equally good the one nearest to the way
-/// the files stand is taken.
-pub fn find_pose(input: PoseInput<'_>) -> Option<Pose> {
-    let scene = Scene::new(&input)?;
-    let mut tried: Vec<Candidate> = scene
-        .starts()
-        .into_par_iter()
-        .map(|start| scene.refined(start, COARSE_STEPS, N_COARSE))
-        .collect();
-    tried.sort_by(|a, b| a.cost.total_cmp(&b.cost));
-    let mut different: Vec<Candidate> = Vec::new();
-    for candidate in tried {
-        if different.len() < N_REFINED
-            && different.iter().all(|d| d.angle_to(&candidate) > SAME_TURN)
-        {
-            different.push(candidate);
-        }
-    }
-    let mut refined: Vec<Candidate> = different
-        .into_par_iter()
-        .map(|c| scene.stretched(scene.refined(c, FINE_STEPS, N_FINE)))
-        .collect();
-    refined.sort_by(|a, b| a.cost.total_cmp(&b.cost));
-
-    let least = refined.first()?.cost;
-    let as_given = Candidate::turned(Matrix3::identity());
-    let best = refined
-        .iter()
-        .filter(|c| c.cost <= AS_GOOD * least + TIE)
-        .min_by(|a, b| a.angle_to(&as_given).total_cmp(&b.angle_to(&as_given)))?;
-    let rival = refined
-        .iter()
-        .find(|c| c.angle_to(best) > SAME_TURN && c.cost < NEARLY_AS_GOOD * best.cost + TIE)
-        .map(|c| (c.angle_to(best).to_degrees(), c.cost));
-    let (matrix, translation) = scene.with_units(best);
-    Some(Pose {
-        matrix,
-        translation,
-        cost: best.cost,
-        turn_deg: best.angle_to(&as_given).to_degrees(),
-        rival,
-    })
-}
-
 /// A map between unit boxes, `p ↦ linear · p + shift`, and what it costs.
 #[derive(Clone, Debug)]
-struct Candidate {
-    linear: Matrix3<f64>,
-    shift: Vector3,
-    cost: f64,
+pub(super) struct Candidate {
+    pub(super) linear: Matrix3<f64>,
+    pub(super) shift: Vector3,
+    pub(super) cost: f64,
 }
 
 impl Candidate {
-    fn turned(linear: Matrix3<f64>) -> Self {
+    pub(super) fn turned(linear: Matrix3<f64>) -> Self {
         Self {
             linear,
             shift: Vector3::zeros(),
@@ -142,8 +41,8 @@ impl Candidate {
     }
 
     /// The angle between the rotations of two maps, in radians.
-    fn angle_to(&self, other: &Self) -> f64 {
-        let [a, b] = [self, other].map(|c| crate::rotation::nearest_rotation(&c.linear));
+    pub(super) fn angle_to(&self, other: &Self) -> f64 {
+        let [a, b] = [self, other].map(|c| mesh_core::nearest_rotation(&c.linear));
         let turn = a.transpose() * b;
         let axis = Vector3::new(
             turn[(2, 1)] - turn[(1, 2)],
@@ -161,8 +60,9 @@ struct Place {
     normal: Option<Vector3>,
 }
 
-/// Both surfaces and their samples, in boxes of longest side 1.
-struct Scene<'a> {
+/// Both surfaces and their samples, in boxes of longest side 1. Samples come shuffled, so that the first few are spread
+/// over all of a surface.
+pub(super) struct Scene<'a> {
     target: &'a dyn TargetSurface,
     frames: [UnitFrame; 2],
     source_bvh: TriangleBvh,
@@ -179,7 +79,7 @@ struct Matched {
 }
 
 impl<'a> Scene<'a> {
-    fn new(input: &PoseInput<'a>) -> Option<Self> {
+    pub(super) fn new(input: &PoseInput<'a>) -> Option<Self> {
         let bounds = [
             mesh_core::Aabb::of(input.rest.iter()),
             input.target.bounds(),
@@ -192,7 +92,6 @@ impl<'a> Scene<'a> {
         let mut rng = ChaCha8Rng::seed_from_u64(input.seed);
         let source = sample_source(input.triangulation, &unit, &mut rng);
         let mut samples = input.target.sample(N_FINE, &mut rng);
-        // They come in the order of the triangles; the coarse search takes the first few.
         samples.shuffle(&mut rng);
         let place = |s: &mesh_core::SurfaceSample| Place {
             point: frames[1].to_unit(&s.point).coords,
@@ -216,7 +115,7 @@ impl<'a> Scene<'a> {
     }
 
     /// All maps to start from: principal axes over principal axes, and axes of the files over each other.
-    fn starts(&self) -> Vec<Candidate> {
+    pub(super) fn starts(&self) -> Vec<Candidate> {
         let (from, to) = (Moments::of(&self.source), Moments::of(&self.samples));
         let scale = to.radius / from.radius;
         let mut starts = Vec::with_capacity(48);
@@ -234,7 +133,7 @@ impl<'a> Scene<'a> {
     }
 
     /// Closest-point iteration over similarities.
-    fn refined(&self, mut at: Candidate, n_steps: usize, n_samples: usize) -> Candidate {
+    pub(super) fn refined(&self, mut at: Candidate, n_steps: usize, n_samples: usize) -> Candidate {
         for _ in 0..n_steps {
             let (matched, _) = self.trimmed(&at, n_samples);
             if let Some(next) = self.fitted(&matched, f64::INFINITY) {
@@ -246,9 +145,9 @@ impl<'a> Scene<'a> {
     }
 
     /// Closest-point iteration over affine maps, where it lowers the cost.
-    fn stretched(&self, best: Candidate) -> Candidate {
+    pub(super) fn stretched(&self, best: Candidate, n_steps: usize) -> Candidate {
         let mut at = best.clone();
-        for _ in 0..FINE_STEPS {
+        for _ in 0..n_steps {
             let (matched, _) = self.trimmed(&at, N_FINE);
             if let Some(next) = self.fitted(&matched, AFFINE_PRIOR) {
                 at = next;
@@ -347,7 +246,7 @@ impl<'a> Scene<'a> {
         NORMAL_COST * 0.5 * (1.0 - agreement)
     }
 
-    fn with_units(&self, map: &Candidate) -> (Matrix3<f64>, Vector3) {
+    pub(super) fn with_units(&self, map: &Candidate) -> (Matrix3<f64>, Vector3) {
         let [from, to] = &self.frames;
         let matrix = map.linear * (to.scale / from.scale);
         let shift = map.shift * to.scale + to.center.coords;
@@ -413,138 +312,18 @@ fn axis_rotations() -> Vec<Matrix3<f64>> {
 
 /// Random places of the source, uniform by area.
 fn sample_source(triangulation: &Triangulation, x: &Positions, rng: &mut ChaCha8Rng) -> Vec<Place> {
-    let mut total = 0.0;
-    let cumulative: Vec<f64> = triangulation
+    let areas = triangulation
         .corners(x)
-        .map(|corners| {
-            total += mesh_core::measure::triangle_area(corners);
-            total
-        })
-        .collect();
-    (0..N_FINE)
-        .map(|_| {
-            let at = rng.random::<f64>() * total;
-            let t = cumulative
-                .partition_point(|&c| c <= at)
-                .min(triangulation.len() - 1);
-            let (r, s) = (rng.random::<f64>().sqrt(), rng.random::<f64>());
-            let corners = triangulation.triangles()[t].map(|v| x[v]);
-            let [a, b, c] = corners.map(|p| p.coords);
-            Place {
-                point: a * (1.0 - r) + b * (r * (1.0 - s)) + c * (r * s),
-                normal: mesh_core::measure::triangle_normal(corners),
-            }
-        })
-        .collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use mesh_core::{shapes, TriangleSoup};
-    use nalgebra::Rotation3;
-
-    /// A ball with a long nose, a hump and no symmetry.
-    fn lump() -> mesh_core::PolygonSoup {
-        let mut soup = shapes::quad_sphere(10);
-        for p in &mut soup.positions {
-            let bump = |at: [f64; 3], height: f64| {
-                height * (-(*p - Point3::from(at)).norm_squared() * 4.0).exp()
-            };
-            let radius = 1.0 + bump([1.0, 0.0, 0.0], 1.2) + bump([0.0, 0.6, 0.8], 1.0);
-            *p = Point3::new(1.4 * p.x * radius, 0.8 * p.y * radius, p.z * radius);
+        .map(mesh_core::measure::triangle_area);
+    let places = TriangleSampler::new(areas).sample(N_FINE, rng);
+    let place = |(t, w): TrianglePlace| {
+        let corners = triangulation.triangles()[t].map(|v| x[v]);
+        Place {
+            point: corners.iter().zip(w).map(|(p, w)| p.coords * w).sum(),
+            normal: mesh_core::measure::triangle_normal(corners),
         }
-        soup
-    }
-
-    fn pose(map: impl Fn(&Point3) -> Point3, landmarks: &[PointPair]) -> (Pose, f64) {
-        let (mesh, rest) = lump().into_halfedge().unwrap();
-        let mut soup = lump();
-        soup.positions.iter_mut().for_each(|p| *p = map(p));
-        let target = TriangleSoup::new(soup).unwrap();
-        let found = find_pose(PoseInput {
-            triangulation: &Triangulation::new(&mesh, &rest),
-            rest: &rest,
-            target: &target,
-            landmarks,
-            seed: 0,
-        })
-        .unwrap();
-        let side = target.bounds().longest_side();
-        let miss = |p: &Point3| (found.apply(p) - map(p)).norm() / side;
-        let worst = rest.iter().map(miss).fold(0.0, f64::max);
-        (found, worst)
-    }
-
-    #[test]
-    fn a_turned_scaled_copy_is_found() {
-        for (k, angles) in [(0.3, -1.2, 2.0), (3.0, 0.1, -0.4), (0.0, 0.0, 0.0)]
-            .into_iter()
-            .enumerate()
-        {
-            let turn = Rotation3::from_euler_angles(angles.0, angles.1, angles.2);
-            let (found, worst) = pose(|p| turn * p * 70.0 + Vector3::new(1e4, -2e3, 5.0), &[]);
-            assert!(worst < 0.01, "{k}: {worst}");
-            assert!(found.rival.is_none());
-            assert!((found.turn_deg - turn.angle().to_degrees()).abs() < 2.0);
-        }
-    }
-
-    #[test]
-    fn a_stretched_copy_is_stretched() {
-        let (_, worst) = pose(|p| Point3::new(p.x, 1.15 * p.y, 0.9 * p.z), &[]);
-        // The prior holds some of the stretch back; the next best way to stand misses by 0.3.
-        assert!(worst < 0.1, "{worst}");
-    }
-
-    #[test]
-    fn a_symmetric_shape_has_a_rival_and_a_landmark_decides() {
-        let mut soup = shapes::quad_sphere(8);
-        for p in &mut soup.positions {
-            *p = Point3::new(2.0 * p.x, 1.3 * p.y, p.z);
-        }
-        let (mesh, rest) = soup.clone().into_halfedge().unwrap();
-        let target = TriangleSoup::new(soup).unwrap();
-        let find = |landmarks: &[PointPair]| {
-            find_pose(PoseInput {
-                triangulation: &Triangulation::new(&mesh, &rest),
-                rest: &rest,
-                target: &target,
-                landmarks,
-                seed: 0,
-            })
-            .unwrap()
-        };
-        let free = find(&[]);
-        assert!(free
-            .rival
-            .is_some_and(|(angle, _)| (angle - 180.0).abs() < 1.0));
-        assert!(free.turn_deg < 1.0);
-
-        let end = PointPair {
-            source: Point3::new(2.0, 0.0, 0.0),
-            target: Point3::new(-2.0, 0.0, 0.0),
-        };
-        let turned = find(&[end]);
-        assert!((turned.apply(&end.source) - end.target).norm() < 0.05);
-        assert!(turned.matrix.determinant() > 0.0);
-    }
-
-    #[test]
-    fn shapes_without_extent_have_none() {
-        let soup = mesh_core::PolygonSoup {
-            positions: vec![Point3::origin(); 3],
-            faces: vec![vec![0, 1, 2]],
-        };
-        let target = TriangleSoup::new(soup).unwrap();
-        let (mesh, rest) = shapes::tetrahedron().into_halfedge().unwrap();
-        let found = find_pose(PoseInput {
-            triangulation: &Triangulation::new(&mesh, &rest),
-            rest: &rest,
-            target: &target,
-            landmarks: &[],
-            seed: 0,
-        });
-        assert!(found.is_none());
-    }
+    };
+    let mut source: Vec<Place> = places.into_iter().map(place).collect();
+    source.shuffle(rng);
+    source
 }
