@@ -17,6 +17,7 @@ mod input;
 mod inspection;
 mod landmarks;
 mod output;
+mod profile;
 mod progress;
 mod reading;
 mod regions;

@@ -1,8 +1,6 @@
 //! One drape from files in memory to figures: the initial deformation, the optimisation, the judge.
 
-use std::time::Instant;
-
-use mesh_core::{Positions, UnitFrame, VertexData};
+use mesh_core::{Positions, Profile, UnitFrame, VertexData};
 use mesh_loss::Overlap;
 use mesh_metrics::{EvaluationConfig, EvaluationInput, Report};
 use neural_drape::network::NetworkMap;
@@ -11,6 +9,7 @@ use neural_drape::{Defects, Drape, DrapeInput, Regions, Repair, Warp, WarpInput}
 use crate::explain::{explain, Counted, Explanation};
 use crate::initial::{deform, Initial};
 use crate::input::Pair;
+use crate::profile::{Stages, DRAPING};
 use crate::progress::{History, Progress};
 use crate::settings::Settings;
 use crate::usage::{Stopwatch, Usage};
@@ -43,23 +42,26 @@ impl Run {
         regions: &Regions,
         truth: Option<&Positions>,
         watch: &Stopwatch,
+        stages: &mut Stages,
     ) -> anyhow::Result<Self> {
-        let mut clock = StageClock::start();
         let Initial {
             positions: initial,
             assumed: mut notes,
-        } = deform(pair, settings.start)?;
-        clock.lap("initial deformation");
-        let drape = drape(pair, &settings, regions, &initial)?;
-        clock.lap("drape");
-        let report = judge(pair, &drape.positions, truth)?;
+        } = stages.time("initial deformation", || deform(pair, settings.start))?;
+        let mut parts = std::mem::take(&mut stages.parts);
+        let drape = stages.time(DRAPING, || {
+            drape(pair, &settings, regions, &initial, &mut parts)
+        })?;
+        stages.parts = parts;
+        let report = stages.time("figures", || judge(pair, &drape.positions, truth))?;
         let counted = Counted {
             attraction: &drape.attraction,
             mesh_exceeds: drape.overlap.mesh_exceeds,
             target_exceeds: drape.overlap.target_exceeds,
         };
-        let explanation = explain(pair, &drape.positions, &report.vertex_distances, &counted);
-        clock.lap("figures");
+        let explanation = stages.time("explanation", || {
+            explain(pair, &drape.positions, &report.vertex_distances, &counted)
+        });
         Ok(Self {
             frame: UnitFrame::of(pair.target.surface.bounds()),
             settings,
@@ -73,7 +75,7 @@ impl Run {
             },
             report,
             explanation,
-            stages: clock.laps,
+            stages: stages.seconds(),
             usage: watch.read(),
         })
     }
@@ -198,6 +200,7 @@ fn drape(
     settings: &Settings,
     regions: &Regions,
     initial: &Positions,
+    parts: &mut Profile,
 ) -> anyhow::Result<Draped> {
     let input = DrapeInput {
         triangulation: &pair.source.triangulation,
@@ -206,7 +209,8 @@ fn drape(
         target: pair.target.over.as_ref(),
         landmarks: &pair.landmarks,
     };
-    let mut drape = Drape::new(input, settings.config.clone())?;
+    let mut drape = parts.time("set-up", || Drape::new(input, settings.config.clone()))?;
+    drape.set_profile(std::mem::take(parts));
     if !regions.is_none() {
         drape.set_regions(regions)?;
     }
@@ -214,7 +218,8 @@ fn drape(
     while let Some(step) = drape.step()? {
         progress.show(&step);
     }
-    let end = drape.finish();
+    *parts = drape.profile().clone();
+    let end = parts.time("last stage", || drape.finish());
     let mut remarks = left_out(&drape);
     remarks.extend(repaired(&end));
     Ok(Draped {
@@ -252,24 +257,4 @@ fn repaired(end: &Repair) -> Vec<String> {
 
 fn count(defects: &Defects) -> usize {
     defects.folds.len() + defects.skinny.len()
-}
-
-/// Seconds between laps.
-struct StageClock {
-    last: Instant,
-    laps: Vec<(&'static str, f64)>,
-}
-
-impl StageClock {
-    fn start() -> Self {
-        Self {
-            last: Instant::now(),
-            laps: Vec::new(),
-        }
-    }
-
-    fn lap(&mut self, name: &'static str) {
-        self.laps.push((name, self.last.elapsed().as_secs_f64()));
-        self.last = Instant::now();
-    }
 }

@@ -11,6 +11,7 @@
 //! | query a moving mesh | [`TriangleBvh`] |
 //! | draw random places | [`sampling::TriangleSampler`] |
 //! | mark pairs of places | [`Landmark`] |
+//! | see where time goes | [`Profile`] |
 //! | build test solids | [`shapes`] |
 
 mod attribute;
@@ -22,6 +23,7 @@ mod ids;
 pub mod io;
 mod landmark;
 pub mod measure;
+mod profile;
 mod rotation;
 pub mod sampling;
 pub mod shapes;
@@ -37,6 +39,7 @@ pub use halfedge::{HalfedgeMesh, Pieces};
 pub use ids::{EdgeId, FaceId, HalfedgeId, Id, VertexId};
 pub use landmark::{Landmark, LandmarkKind, MeshPoint};
 pub use measure::{Aabb, UnitFrame};
+pub use profile::{Clock, Profile, Span};
 pub use rotation::nearest_rotation;
 pub use soup::PolygonSoup;
 pub use surface::{

@@ -2,7 +2,7 @@
 
 use mesh_core::sampling::{TrianglePlace, TriangleSampler};
 use mesh_core::{
-    Location, NormalSign, Point3, Positions, SurfaceSample, TargetSurface, TriangleBvh,
+    Location, NormalSign, Point3, Positions, Profile, SurfaceSample, TargetSurface, TriangleBvh,
     Triangulation, UnitFrame, Vector3, VertexData, VertexId,
 };
 use rand::RngCore;
@@ -129,7 +129,7 @@ impl<'a> SurfaceMatcher<'a> {
             n_hard: 0,
             overlap: Overlap::default(),
         };
-        let all = self.resample(x, &config, rng);
+        let all = self.resample(x, &config, rng, &mut Profile::off());
         let share = |matches: &[SurfaceMatch]| {
             let n_beyond = matches
                 .iter()
@@ -154,14 +154,15 @@ impl<'a> SurfaceMatcher<'a> {
         self.hard.keep(corners)
     }
 
-    /// Fresh samples of both surfaces, matched with the mesh at `x`.
+    /// Fresh samples of both surfaces, matched with the mesh at `x`; `profile` tells what it took.
     pub fn resample(
         &mut self,
         x: &Positions,
         config: &SamplingConfig,
         rng: &mut dyn RngCore,
+        profile: &mut Profile,
     ) -> Matches {
-        self.bvh.refit(self.triangulation.corners(x));
+        profile.time("refit", || self.bvh.refit(self.triangulation.corners(x)));
         let normals: Vec<Option<Vector3>> = self
             .triangulation
             .corners(x)
@@ -176,10 +177,12 @@ impl<'a> SurfaceMatcher<'a> {
             config,
         };
         Matches {
-            to_target: side.to_target(x, rng),
-            to_mesh: side.to_mesh(&self.bvh, rng),
-            hard_to_target: self.hard.match_mesh(x, &side, rng),
-            hard_to_mesh: self.hard.match_target(x, &self.bvh, &side, rng),
+            to_target: side.to_target(x, rng, profile),
+            to_mesh: side.to_mesh(&self.bvh, rng, profile),
+            hard_to_target: profile.time("worst places", || self.hard.match_mesh(x, &side, rng)),
+            hard_to_mesh: profile.time("worst places", || {
+                self.hard.match_target(x, &self.bvh, &side, rng)
+            }),
         }
     }
 }
@@ -195,15 +198,28 @@ pub(crate) struct Side<'a> {
 }
 
 impl Side<'_> {
-    fn to_target(&self, x: &Positions, rng: &mut dyn RngCore) -> Vec<SurfaceMatch> {
-        let places = sample_mesh(self.triangulation, x, self.config, rng);
-        let pairs = self.match_places(&places, x);
+    fn to_target(
+        &self,
+        x: &Positions,
+        rng: &mut dyn RngCore,
+        profile: &mut Profile,
+    ) -> Vec<SurfaceMatch> {
+        let places = profile.time("sampling", || {
+            sample_mesh(self.triangulation, x, self.config, rng)
+        });
+        let pairs = profile.time("closest on target", || self.match_places(&places, x));
         pairs.into_iter().flatten().collect()
     }
 
-    fn to_mesh(&self, bvh: &TriangleBvh, rng: &mut dyn RngCore) -> Vec<SurfaceMatch> {
-        let samples = self.target.sample(self.config.n_samples, rng);
-        let pairs = self.match_samples(&samples, bvh);
+    fn to_mesh(
+        &self,
+        bvh: &TriangleBvh,
+        rng: &mut dyn RngCore,
+        profile: &mut Profile,
+    ) -> Vec<SurfaceMatch> {
+        let n = self.config.n_samples;
+        let samples = profile.time("sampling", || self.target.sample(n, rng));
+        let pairs = profile.time("closest on mesh", || self.match_samples(&samples, bvh));
         pairs.into_iter().flatten().collect()
     }
 

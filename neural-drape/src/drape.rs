@@ -1,7 +1,8 @@
 //! The stepper: one engine for every parametrisation and every preset.
 
 use mesh_core::{
-    Landmark, Positions, TargetSurface, Triangulation, UnitFrame, Vector3, VertexData, VertexId,
+    Landmark, Positions, Profile, TargetSurface, Triangulation, UnitFrame, Vector3, VertexData,
+    VertexId,
 };
 use mesh_loss::{
     Beyond, Chamfer, HardCorners, LandmarkDistance, Matches, NormalAgreement, Overlap,
@@ -66,6 +67,7 @@ pub struct Drape<'a> {
     stage_starts: Vec<usize>,
     gradient: VertexData<Vector3>,
     rng: ChaCha8Rng,
+    profile: Profile,
 }
 
 impl<'a> Drape<'a> {
@@ -115,6 +117,7 @@ impl<'a> Drape<'a> {
             n_iterations: config.stages.iter().map(|s| s.n_iterations).sum(),
             gradient: VertexData::new(initial.len(), Vector3::zeros()),
             rng,
+            profile: Profile::off(),
             config,
         };
         drape.set_landmarks(input.landmarks)?;
@@ -135,7 +138,9 @@ impl<'a> Drape<'a> {
             .learning_rate
             .at(self.iteration, self.n_iterations);
         let progress = self.iteration as f64 / self.n_iterations as f64;
-        self.parametrization.set_progress(progress)?;
+        self.profile.time("preconditioner", || {
+            self.parametrization.set_progress(progress)
+        })?;
         if self.stage_starts.contains(&self.iteration) {
             let x = self.parametrization.positions();
             self.structure.anchor(self.input.triangulation, x);
@@ -143,13 +148,17 @@ impl<'a> Drape<'a> {
 
         let sampling = self.config.sampling.at(self.iteration, self.overlap);
         let x = self.parametrization.positions();
-        let matches = self.matcher.resample(x, &sampling, &mut self.rng);
-        let matches = self.guidance.weighted(
-            matches,
-            self.input.triangulation,
-            x,
-            self.overlap.mesh_exceeds,
-        );
+        let matches = self
+            .matcher
+            .resample(x, &sampling, &mut self.rng, &mut self.profile);
+        let matches = self.profile.time("regions", || {
+            self.guidance.weighted(
+                matches,
+                self.input.triangulation,
+                x,
+                self.overlap.mesh_exceeds,
+            )
+        });
 
         let mut terms = self.add_distance_terms(&matches, &weights);
         if self.config.descent == Descent::Alternating {
@@ -159,6 +168,7 @@ impl<'a> Drape<'a> {
             &self.structure.terms(&weights),
             self.parametrization.positions(),
             &mut self.gradient,
+            &mut self.profile,
         ));
         self.descend(rate)?;
 
@@ -207,10 +217,11 @@ impl<'a> Drape<'a> {
             Follow::Bodies
         };
         let x = self.parametrization.positions();
-        if let Some(moves) = self
-            .guidance
-            .correction(self.input.triangulation, x, follow)?
-        {
+        let correction = self.profile.time("regions", || {
+            self.guidance
+                .correction(self.input.triangulation, x, follow)
+        })?;
+        if let Some(moves) = correction {
             self.parametrization.displace(&moves);
         }
         Ok(())
@@ -351,6 +362,17 @@ impl<'a> Drape<'a> {
         Some(network.outside(&self.frame))
     }
 
+    /// Measures from now on what each part of a step takes; [`Profile::off`] stops that.
+    pub fn set_profile(&mut self, profile: Profile) {
+        self.profile = profile;
+    }
+
+    /// What the parts of the steps took, by name: refit, sampling, closest points either way, every term by its own
+    /// name, solves and step.
+    pub fn profile(&self) -> &Profile {
+        &self.profile
+    }
+
     /// How many iterations are done.
     pub fn iteration(&self) -> usize {
         self.iteration
@@ -382,7 +404,9 @@ impl<'a> Drape<'a> {
     }
 
     fn descend(&mut self, rate: f64) -> Result<(), DrapeError> {
-        self.parametrization.descend(&self.gradient, rate)?;
+        self.profile.time("solves and step", || {
+            self.parametrization.descend(&self.gradient, rate)
+        })?;
         let is_finite = |p: &mesh_core::Point3| p.coords.iter().all(|c| c.is_finite());
         if !self.parametrization.positions().iter().all(is_finite) {
             return Err(DrapeError::Diverged {
@@ -406,7 +430,8 @@ impl<'a> Drape<'a> {
             ("normals", w.normal_agreement, &NormalAgreement(matches)),
             ("landmarks", w.landmark, &LandmarkDistance(&self.landmarks)),
         ];
-        accumulate(&terms, self.parametrization.positions(), &mut self.gradient)
+        let x = self.parametrization.positions();
+        accumulate(&terms, x, &mut self.gradient, &mut self.profile)
     }
 }
 

@@ -1,6 +1,6 @@
 //! The terms of the loss: those of the mesh alone, and how any is added and reported.
 
-use mesh_core::{Positions, Triangulation, Vector3, VertexData};
+use mesh_core::{Positions, Profile, Triangulation, Vector3, VertexData};
 use mesh_loss::{
     AreaKl, Conformal, CornerAngle, Drift, Flip, FoldBarrier, LocalShape, Loss, TriangleQuality,
 };
@@ -27,13 +27,14 @@ pub(crate) fn accumulate(
     terms: &[Term<'_>],
     x: &Positions,
     gradient: &mut VertexData<Vector3>,
+    profile: &mut Profile,
 ) -> Vec<TermReport> {
     terms
         .iter()
         .filter(|(_, weight, _)| *weight > 0.0)
         .map(|&(name, weight, loss)| TermReport {
             name,
-            value: loss.accumulate(x, weight, gradient),
+            value: profile.time(name, || loss.accumulate(x, weight, gradient)),
             weight,
         })
         .collect()

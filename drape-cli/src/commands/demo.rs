@@ -7,6 +7,7 @@ use super::transfer;
 use crate::demo;
 use crate::gallery::ViewArgs;
 use crate::output::say;
+use crate::profile::ProfileArgs;
 use crate::regions::RegionArgs;
 use crate::render::Up;
 use crate::seams::{MorphArgs, Morphing, Seams, WeldArgs};
@@ -25,6 +26,7 @@ pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let files = demo::write(&args.output)?;
     let name = |name: &str| args.output.join(name);
     let transfer = transfer::Args {
+        profile: ProfileArgs { profile: false },
         source: files.source,
         target: files.target,
         landmarks: Some(files.landmarks),

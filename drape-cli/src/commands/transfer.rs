@@ -10,6 +10,7 @@ use mesh_core::Positions;
 use crate::gallery::{Gallery, ViewArgs, DISTANCE_AT_TOP};
 use crate::input::{read_positions, Pair};
 use crate::output::{check_distinct, check_mesh, check_writable, left_beside, say, warn};
+use crate::profile::{ProfileArgs, Stages};
 use crate::regions::RegionArgs;
 use crate::render::{Image, View};
 use crate::report::Page;
@@ -56,6 +57,8 @@ pub(crate) struct Args {
     /// Conditions such as 'q>=0.85,folds=0'; the exit code is 1 where one does not hold
     #[arg(long, value_name = "CONDITIONS")]
     pub(super) require: Option<Requirements>,
+    #[command(flatten)]
+    pub(super) profile: ProfileArgs,
     /// Print JSON
     #[arg(long)]
     pub(super) json: bool,
@@ -68,10 +71,13 @@ const PNG_PICTURE: usize = 420;
 
 pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let watch = Stopwatch::start();
+    let mut stages = Stages::new(&args.profile);
     check_outputs(args)?;
     let settings = args.settings.settings()?;
     let landmarks = args.landmarks.as_deref();
-    let mut pair = Pair::read(&args.source, &args.target, landmarks, args.weld.weld)?;
+    let mut pair = stages.time("reading", || {
+        Pair::read(&args.source, &args.target, landmarks, args.weld.weld)
+    })?;
     pair.file.set_morphs(args.morphs.morphs.into());
     pair.file.check_writable(&args.output)?;
     let truth = args
@@ -87,7 +93,14 @@ pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
     warnings.extend(pair.file.lost_in(&args.output));
     warnings.extend(left_beside(&pair.file, &args.output));
     warn(&warnings);
-    let run = Run::new(&pair, settings, &chosen.regions, truth.as_ref(), &watch)?;
+    let run = Run::new(
+        &pair,
+        settings,
+        &chosen.regions,
+        truth.as_ref(),
+        &watch,
+        &mut stages,
+    )?;
     warn(&run.notes);
     warnings.extend(run.notes.iter().cloned());
     let done = Done {
@@ -97,8 +110,8 @@ pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
         warnings,
         run,
     };
-    done.write()?;
-    say(&if args.json { done.json()? } else { done.text() })?;
+    stages.time("writing", || done.write())?;
+    done.tell(&watch, &stages)?;
     let figures = done.run.figures();
     Ok(args
         .require
@@ -193,6 +206,23 @@ impl Done<'_> {
         page.to_html()
     }
 
+    /// Prints the figures, and where the time went if that was asked for.
+    fn tell(&self, watch: &Stopwatch, stages: &Stages) -> anyhow::Result<()> {
+        let is_profiled = self.args.profile.profile;
+        if self.args.json {
+            let mut json = self.json();
+            if is_profiled {
+                json["profile"] = stages.json();
+            }
+            return Ok(say(&format!("{json:#}\n"))?);
+        }
+        say(&self.text())?;
+        if is_profiled {
+            say(&stages.table(&watch.read()))?;
+        }
+        Ok(())
+    }
+
     fn text(&self) -> String {
         let Self { args, run, .. } = self;
         let outputs = [
@@ -215,9 +245,9 @@ impl Done<'_> {
         )
     }
 
-    fn json(&self) -> anyhow::Result<String> {
+    fn json(&self) -> serde_json::Value {
         let Self { args, run, .. } = self;
-        let json = serde_json::json!({
+        serde_json::json!({
             "source": args.source,
             "target": args.target,
             "landmarks": args.landmarks,
@@ -231,8 +261,7 @@ impl Done<'_> {
             "usage": run.usage,
             "stages": run.stages.iter().copied().collect::<BTreeMap<_, _>>(),
             "warnings": self.warnings,
-        });
-        Ok(format!("{json:#}\n"))
+        })
     }
 }
 

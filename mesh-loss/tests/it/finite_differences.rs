@@ -1,8 +1,8 @@
 //! Each analytic gradient equals central differences in f64, on triangles and polygons, closed and open shapes.
 
 use mesh_core::{
-    shapes, Landmark, MeshPoint, Point3, PolygonSoup, Positions, TriangleSoup, Triangulation,
-    UnitFrame, Vector3, VertexData, VertexId,
+    shapes, Landmark, MeshPoint, Point3, PolygonSoup, Positions, Profile, TriangleSoup,
+    Triangulation, UnitFrame, Vector3, VertexData, VertexId,
 };
 use mesh_loss::{
     AreaKl, Chamfer, Conformal, CornerAngle, Drift, Flip, FoldBarrier, LandmarkDistance,
@@ -102,8 +102,12 @@ fn matches(s: &mut Setup, normal_bias: Option<f64>) -> Matches {
         n_hard: 20,
         overlap: mesh_loss::Overlap::default(),
     };
-    SurfaceMatcher::new(&s.triangulation, &s.moved, &target, UNIT)
-        .resample(&s.moved, &config, &mut s.rng)
+    SurfaceMatcher::new(&s.triangulation, &s.moved, &target, UNIT).resample(
+        &s.moved,
+        &config,
+        &mut s.rng,
+        &mut Profile::off(),
+    )
 }
 
 proptest! {

@@ -1,6 +1,6 @@
 //! Values in closed form: 0 at rest, invariances, bounds.
 
-use mesh_core::{shapes, Point3, Positions, TriangleSoup, Vector3, VertexData};
+use mesh_core::{shapes, Point3, Positions, Profile, TriangleSoup, Vector3, VertexData};
 use mesh_loss::{
     AreaKl, Chamfer, Conformal, CornerAngle, Drift, Flip, FoldBarrier, LocalShape, Loss,
     SamplingConfig, SurfaceMatcher, TriangleQuality, WorstDistance,
@@ -85,8 +85,12 @@ fn chamfer_of_a_shifted_plane_is_the_shift() {
         overlap: mesh_loss::Overlap::default(),
     };
     let mut rng = <rand_chacha::ChaCha8Rng as rand::SeedableRng>::seed_from_u64(3);
-    let matches = SurfaceMatcher::new(&triangulation, &shifted, &target, UNIT)
-        .resample(&shifted, &config, &mut rng);
+    let matches = SurfaceMatcher::new(&triangulation, &shifted, &target, UNIT).resample(
+        &shifted,
+        &config,
+        &mut rng,
+        &mut Profile::off(),
+    );
     assert!((value_and_gradient(&Chamfer(&matches), &shifted).0 - 0.5).abs() < 1e-12);
     let worst = WorstDistance {
         matches: &matches,
