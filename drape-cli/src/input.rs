@@ -220,9 +220,9 @@ impl Target {
 
 /// Everything that a drape starts from.
 pub(crate) struct Pair {
-    pub(crate) file: MeshFile,
-    pub(crate) source: Source,
-    pub(crate) target: Target,
+    pub(crate) file: Arc<MeshFile>,
+    pub(crate) source: Arc<Source>,
+    pub(crate) target: Arc<Target>,
     pub(crate) landmarks: Vec<Landmark>,
 }
 
@@ -240,9 +240,9 @@ impl Pair {
             None => Vec::new(),
         };
         Ok(Self {
-            file,
-            source,
-            target,
+            file: Arc::new(file),
+            source: Arc::new(source),
+            target: Arc::new(target),
             landmarks,
         })
     }

@@ -1,10 +1,10 @@
 //! What the studio borrows from the command line.
 
 use std::path::Path;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 
 use anyhow::Context as _;
-use drape_studio::{Deformed, Finished, Parts, Scene, Settings, TargetParts, Toolbox};
+use drape_studio::{Deformed, Finished, InnerPart, Parts, Scene, Settings, TargetParts, Toolbox};
 use mesh_core::io::MeshFile;
 use mesh_core::Landmark;
 use neural_drape::{DrapeConfig, Regions};
@@ -13,6 +13,7 @@ use crate::gallery::Gallery;
 use crate::initial::deform;
 use crate::input::{read_target, Pair, Source, Target};
 use crate::landmarks;
+use crate::regions::hidden::Hidden;
 use crate::regions::RegionArgs;
 use crate::render::{Up, View};
 use crate::report::Page;
@@ -30,50 +31,65 @@ pub(crate) struct CommandLine {
     held: Mutex<Held>,
 }
 
-#[derive(Default)]
+#[derive(Clone, Default)]
 struct Held {
     source: Option<HeldSource>,
-    target: Option<Target>,
+    target: Option<Arc<Target>>,
+    /// The inner surfaces of these two, once they are asked for.
+    hidden: Arc<OnceLock<Hidden>>,
 }
 
 /// The source of a scene as the other commands have it.
+#[derive(Clone)]
 struct HeldSource {
     of: Arc<drape_studio::Source>,
-    file: MeshFile,
-    source: Source,
+    file: Arc<MeshFile>,
+    source: Arc<Source>,
+}
+
+/// The pair of a scene.
+struct Known {
+    pair: Pair,
+    hidden: Arc<OnceLock<Hidden>>,
 }
 
 impl CommandLine {
-    /// Works on the pair of a scene.
-    fn with_pair<T>(
-        &self,
-        scene: &Scene,
-        landmarks: &[Landmark],
-        work: impl FnOnce(&Pair) -> anyhow::Result<T>,
-    ) -> anyhow::Result<T> {
-        let mut held = self.held.lock().unwrap_or_else(PoisonError::into_inner);
-        let HeldSource { of, file, source } = match held.source.take() {
-            Some(known) if Arc::ptr_eq(&known.of, &scene.source) => known,
-            _ => HeldSource::of(scene)?,
-        };
-        let target = match held.target.take() {
-            Some(known) if Arc::ptr_eq(&known.surface, &scene.target.parts.judged) => known,
-            _ => read_target(&scene.target.path)?,
-        };
-        let pair = Pair {
-            file,
+    fn held(&self) -> MutexGuard<'_, Held> {
+        self.held.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// The pair of a scene, made where it is not held. Several threads may work on it at once.
+    fn know(&self, scene: &Scene, landmarks: &[Landmark]) -> anyhow::Result<Known> {
+        let mut held = self.held();
+        if !held
+            .source
+            .as_ref()
+            .is_some_and(|s| Arc::ptr_eq(&s.of, &scene.source))
+        {
+            held.source = Some(HeldSource::of(scene)?);
+            held.hidden = Arc::default();
+        }
+        let is_held =
+            |target: &Arc<Target>| Arc::ptr_eq(&target.surface, &scene.target.parts.judged);
+        if !held.target.as_ref().is_some_and(is_held) {
+            held.target = Some(Arc::new(read_target(&scene.target.path)?));
+            held.hidden = Arc::default();
+        }
+        let Held {
             source,
             target,
-            landmarks: landmarks.to_vec(),
-        };
-        let outcome = work(&pair);
-        held.source = Some(HeldSource {
-            of,
-            file: pair.file,
-            source: pair.source,
-        });
-        held.target = Some(pair.target);
-        outcome
+            hidden,
+        } = held.clone();
+        let (source, target) = source.zip(target).context("nothing is open")?;
+        Ok(Known {
+            pair: Pair {
+                file: source.file,
+                source: source.source,
+                target,
+                landmarks: landmarks.to_vec(),
+            },
+            hidden,
+        })
     }
 }
 
@@ -84,8 +100,8 @@ impl HeldSource {
             .with_context(|| file.path().display().to_string())?;
         Ok(Self {
             of: Arc::clone(&scene.source),
-            file,
-            source,
+            file: Arc::new(file),
+            source: Arc::new(source),
         })
     }
 }
@@ -105,16 +121,14 @@ impl Toolbox for CommandLine {
     }
 
     fn read_target(&self, path: &Path) -> anyhow::Result<TargetParts> {
-        let target = read_target(path)?;
-        let parts = TargetParts {
+        let target = Arc::new(read_target(path)?);
+        let mut held = self.held();
+        held.target = Some(Arc::clone(&target));
+        held.hidden = Arc::default();
+        Ok(TargetParts {
             over: Arc::clone(&target.over),
             judged: Arc::clone(&target.surface),
-        };
-        self.held
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner)
-            .target = Some(target);
-        Ok(parts)
+        })
     }
 
     fn deform(
@@ -124,32 +138,51 @@ impl Toolbox for CommandLine {
         settings: &Settings,
     ) -> anyhow::Result<Deformed> {
         let start = settings::from_text(&settings.toml)?.start;
-        self.with_pair(scene, landmarks, |pair| {
-            let initial = deform(pair, start)?;
-            Ok(Deformed {
-                positions: initial.positions,
-                assumed: initial.assumed,
-            })
+        let initial = deform(&self.know(scene, landmarks)?.pair, start)?;
+        Ok(Deformed {
+            positions: initial.positions,
+            assumed: initial.assumed,
         })
     }
 
     fn regions(&self, scene: &Scene, parts: &Parts) -> anyhow::Result<(Regions, Vec<String>)> {
-        let args = RegionArgs::named(&parts.free, &parts.rigid);
-        self.with_pair(scene, &[], |pair| {
-            let chosen = args.resolve(pair)?;
-            Ok((chosen.regions, chosen.notes))
-        })
+        let Known { pair, hidden } = self.know(scene, &[])?;
+        let chosen = RegionArgs::named(parts).resolve_knowing(&pair, &hidden)?;
+        Ok((chosen.regions, chosen.notes))
+    }
+
+    fn inner_parts(&self, scene: &Scene) -> anyhow::Result<Vec<InnerPart>> {
+        let Known { pair, hidden } = self.know(scene, &[])?;
+        let hidden = hidden.get_or_init(|| Hidden::of(&pair));
+        let parts = hidden
+            .inner
+            .iter()
+            .enumerate()
+            .map(|(row, part)| InnerPart {
+                name: format!("hidden:{}", row + 1),
+                about: format!(
+                    "{}, {} vertices, {:.1} % of the area",
+                    part.kind(),
+                    part.vertices.len(),
+                    100.0 * part.share
+                ),
+                vertices: part.vertices.clone(),
+                proposed: part.proposed(),
+                unasked: hidden.unasked(part),
+            });
+        Ok(parts.collect())
     }
 
     fn examine(&self, scene: &Scene, landmarks: &[Landmark]) -> Vec<String> {
-        self.with_pair(scene, landmarks, |pair| Ok(pair.warnings()))
-            .unwrap_or_else(|error| vec![format!("{error:#}")])
+        match self.know(scene, landmarks) {
+            Ok(known) => known.pair.warnings(),
+            Err(error) => vec![format!("{error:#}")],
+        }
     }
 
     fn read_landmarks(&self, scene: &Scene, path: &Path) -> anyhow::Result<Vec<Landmark>> {
-        self.with_pair(scene, &[], |pair| {
-            landmarks::read(path)?.resolve(&pair.source, &pair.target.vertices)
-        })
+        let pair = self.know(scene, &[])?.pair;
+        landmarks::read(path)?.resolve(&pair.source, &pair.target.vertices)
     }
 
     fn report(&self, finished: Finished<'_>) -> anyhow::Result<String> {
@@ -158,17 +191,16 @@ impl Toolbox for CommandLine {
             draped: finished.draped.clone(),
         };
         let settings = settings::from_text(&finished.settings.toml)?;
-        self.with_pair(finished.scene, finished.landmarks, |pair| {
-            let run = Run::of_result(pair, settings, shapes, &Stopwatch::start())?;
-            let page = Page {
-                title: "A drape made in the studio",
-                run: &run,
-                gallery: &Gallery::new(pair, &run.initial, Up::Y, REPORT_PICTURE),
-                views: &[View::FRONT_QUARTER, View::BACK_QUARTER],
-                warnings: &pair.warnings(),
-                truth: None,
-            };
-            page.to_html()
-        })
+        let pair = &self.know(finished.scene, finished.landmarks)?.pair;
+        let run = Run::of_result(pair, settings, shapes, &Stopwatch::start())?;
+        let page = Page {
+            title: "A drape made in the studio",
+            run: &run,
+            gallery: &Gallery::new(pair, &run.initial, Up::Y, REPORT_PICTURE),
+            views: &[View::FRONT_QUARTER, View::BACK_QUARTER],
+            warnings: &pair.warnings(),
+            truth: None,
+        };
+        page.to_html()
     }
 }

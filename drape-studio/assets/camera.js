@@ -48,6 +48,11 @@ export class Camera {
     this.centre = subtract(this.centre, turnBack(this.rotation, [dx * unit, -dy * unit, 0]));
   }
 
+  // How many pixels a length has in the middle of a view.
+  pixels(length, width, height) {
+    return (length * height) / (2 * this.distance * tangent(width / height));
+  }
+
   zoom(factor) {
     this.distance = Math.max(0.02, Math.min(40, this.distance * factor));
   }

@@ -10,7 +10,7 @@ const MOUSE = [
 ];
 
 const KEYS = [
-  ["Drape", [["D", "drape"], ["Space", "pause, resume"], [".", "one iteration"]]],
+  ["Drape", [["D", "drape"], ["Space", "pause, resume"], [".", "one iteration"], ["E", "more iterations"]]],
   ["Landmarks", [["Ctrl Z", "undo"], ["Ctrl Shift Z", "redo"], ["Delete", "delete the chosen one"], ["F2", "rename it"], ["R", "soft or rigid"], ["M", "mirror on or off"], ["Esc", "choose none"]]],
   ["Cameras", [["Home", "frame everything"], ["F", "frame the chosen landmark"], ["1 3 7", "from the front, the side, above"], ["Arrows", "turn"], ["+ −", "nearer, farther"], ["L", "together or each alone"], ["A", "turn the source as the result stands"], ["U", "y or z points up"]]],
   ["Shown", [["Z", "shaded, edges, points"], ["H", "next heat map"], ["O", "target over result"], ["T", "light or dark"], ["?", "this page"]]],

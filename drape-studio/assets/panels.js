@@ -17,7 +17,7 @@ export class Panels {
     on("open-source", "click", () => this.chooseFile("source"));
     on("open-target", "click", () => this.chooseFile("target"));
     on("open-landmarks", "click", () => this.chooseFile("landmarks"));
-    for (const what of ["undo", "redo", "clear", "drape", "pause", "resume", "step", "stop", "reset"]) on(what, "click", () => app.ask(what));
+    for (const what of ["undo", "redo", "clear", "drape", "pause", "resume", "step", "extend", "stop", "reset"]) on(what, "click", () => app.ask(what));
     on("preset", "change", () => app.ask("preset", { name: $("preset").value }));
     on("seed", "change", () => app.ask("seed", { seed: Math.max(0, Math.min(4294967295, Math.round(Number($("seed").value) || 0))) }));
     for (const id of ["mirror", "mirror-source", "mirror-target"]) on(id, "change", () => this.mirror());
@@ -39,12 +39,12 @@ export class Panels {
   }
 
   async open(role, file) {
-    this.app.say(`Opening ${file.name}…`);
+    this.app.words.say(`Opening ${file.name}…`);
     try {
       await openFile(role, file);
-      this.app.say("");
+      this.app.words.say("");
     } catch (error) {
-      this.app.complain(error);
+      this.app.words.complain(error);
     }
   }
 
@@ -104,7 +104,9 @@ export class Panels {
     $("drape").textContent = hasRun ? "Drape again" : "Drape";
     $("pause").hidden = !isBusy;
     $("resume").hidden = !hasRun || isBusy || run.status === "failed" || (run.status === "finished" && !run.pending);
-    $("resume").textContent = run.pending ? "Resume with the new landmarks" : "Resume";
+    $("resume").textContent = !run.pending ? "Resume" : run.pending_parts ? "Resume with the changes" : "Resume with the new landmarks";
+    $("extend").hidden = !["finished", "stopped"].includes(run.status);
+    $("extend").textContent = `${run.n_more} more iterations`;
     $("step").disabled = !isReady || isBusy || (run.status === "finished" && !run.pending) || run.status === "failed";
     $("stop").disabled = !isBusy && run.status !== "paused";
     $("reset").disabled = !hasRun;
@@ -129,39 +131,6 @@ export class Panels {
       return item;
     }));
     this.showLandmarks(landmarks);
-    this.showParts(state);
-  }
-
-  // Groups, objects and materials of the source, and how each is draped.
-  showParts({ source, parts }) {
-    const names = source?.parts ?? [];
-    $("parts-section").hidden = names.length === 0;
-    const key = JSON.stringify(names);
-    if (this.partNames !== key) {
-      this.partNames = key;
-      this.parts = new Map(names.map((name) => [name, this.addPart(name)]));
-      $("parts").replaceChildren(...[...this.parts.values()].map(({ item }) => item));
-    }
-    const ways = Object.fromEntries(names.map((name) => [name, parts.free.includes(name) ? "free" : parts.rigid.includes(name) ? "rigid" : "draped"]));
-    for (const [name, { select }] of this.parts) select.value = ways[name];
-    this.app.setParts(ways);
-  }
-
-  addPart(name) {
-    const [item, label, select] = ["li", "span", "select"].map((tag) => document.createElement(tag));
-    label.textContent = label.title = name;
-    for (const way of ["draped", "free", "rigid"]) select.append(new Option(way, way));
-    select.setAttribute("aria-label", `How ${name} is draped`);
-    select.title = "Free parts attract nothing and are carried along, rigid ones move as one body";
-    select.addEventListener("change", async () => {
-      await this.app.ask("part", { name, treatment: select.value });
-      // Where it was refused, what holds is shown again.
-      this.showParts(this.app.state);
-    });
-    for (const event of ["pointerenter", "focusin"]) item.addEventListener(event, () => this.app.pointOut(name));
-    for (const event of ["pointerleave", "focusout"]) item.addEventListener(event, () => this.app.pointOut(null));
-    item.append(label, select);
-    return { item, select };
   }
 
   showLandmarks(landmarks) {
@@ -238,7 +207,7 @@ export class Panels {
     const parts = [words[run.status]];
     if (run.status !== "none" && n > 0) parts.push(`iteration ${iteration} of ${n}`);
     if (run.status === "running" && left > 0) parts.push(`${time(left)} left`);
-    if (run.pending && run.status !== "running") parts.push("landmarks changed: the result shows how it would go on");
+    if (run.pending && run.status !== "running") parts.push(run.pending_landmarks ? "landmarks changed: the result shows how it would go on" : "parts changed: this holds once it goes on");
     $("status").textContent = run.error ? sentence(run.error) : parts.join(" · ");
     $("status").classList.toggle("is-bad", Boolean(run.error));
   }

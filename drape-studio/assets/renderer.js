@@ -91,18 +91,45 @@ export class Renderer {
     return isResized;
   }
 
-  // Clears a part of the canvas and draws there, in pixels of the page from the canvas's corner.
-  part(box, matrices, background) {
+  // Draws into a part of the canvas from now on, in pixels of the page from the canvas's corner.
+  aim(box, matrices) {
     const { gl, canvas } = this;
     const ratio = canvas.width / Math.max(1, canvas.clientWidth);
     const rect = [box.left, canvas.clientHeight - box.top - box.height, box.width, box.height].map((x) => Math.round(x * ratio));
     gl.viewport(...rect);
     gl.scissor(...rect);
-    gl.clearColor(...background, 1);
-    gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
     gl.uniformMatrix4fv(this.at.view, false, matrices.view);
     gl.uniformMatrix4fv(this.at.both, false, matrices.both);
     this.ratio = ratio;
+  }
+
+  clear(background) {
+    const { gl } = this;
+    gl.clearColor(...background, 1);
+    gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
+  }
+
+  // Lets points be counted that are not hidden, changing nothing.
+  probe(buffer, pixels, draw) {
+    const { gl, at } = this;
+    this.attribute(0, buffer, 3);
+    this.attribute(1, null);
+    this.attribute(2, null);
+    gl.uniform1i(at.mode, 1);
+    gl.uniform1f(at.pointSize, pixels * this.ratio);
+    gl.colorMask(false, false, false, false);
+    gl.depthMask(false);
+    draw();
+    gl.depthMask(true);
+    gl.colorMask(true, true, true, true);
+  }
+
+  // Draws ranges of coloured triangles over everything else.
+  through(shape, ranges, range) {
+    const { gl } = this;
+    gl.clear(gl.DEPTH_BUFFER_BIT);
+    this.heat(shape, range);
+    for (const [from, to] of ranges) gl.drawArrays(gl.TRIANGLES, 3 * from, 3 * (to - from));
   }
 
   attribute(location, buffer, size) {
@@ -121,9 +148,9 @@ export class Renderer {
     this.gl.uniform4f(this.at.colour, r, g, b, alpha);
   }
 
-  // style: shaded, wire (shaded with edges), points.
-  draw(shape, { style, colour, line, alpha = 1, range = null }) {
-    const { gl, at } = this;
+  // style: shaded, wire (shaded with edges), points; `ink` is how strong the edges are.
+  draw(shape, { style, colour, line, ink = 0, alpha = 1, range = null }) {
+    const { gl } = this;
     if (alpha <= 0) return;
     const isBlended = alpha < 1;
     if (isBlended) {
@@ -133,7 +160,7 @@ export class Renderer {
     this.colour(colour, alpha);
     if (shape.isCloud || style === "points") this.points(shape);
     else this.surface(shape, isBlended, range);
-    if (style === "wire" && !shape.isCloud) this.lines(shape, line, alpha);
+    if (style === "wire" && !shape.isCloud && ink > 0) this.lines(shape, line, ink);
     gl.disable(gl.BLEND);
   }
 
@@ -148,15 +175,11 @@ export class Renderer {
   }
 
   surface(shape, isBlended, range) {
-    const { gl, at } = this;
+    const { gl } = this;
     const isHeat = shape.values && range;
     const isSpread = isHeat && shape.perTriangle;
-    if (isSpread) shape.spread();
-    this.attribute(0, isSpread ? shape.buffers.spread : shape.buffers.positions, 3);
-    this.attribute(1, isSpread ? shape.buffers.spreadNormals : shape.buffers.normals, 3);
-    this.attribute(2, isHeat ? shape.buffers.values : null, 1);
-    if (isHeat) gl.uniform2f(at.range, ...range);
-    gl.uniform1i(at.mode, isHeat ? 2 : 0);
+    if (isHeat) this.heat(shape, range);
+    else this.plain(shape);
     gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, shape.buffers.triangles);
     gl.enable(gl.POLYGON_OFFSET_FILL);
     gl.polygonOffset(1, 1);
@@ -172,6 +195,24 @@ export class Renderer {
     gl.disable(gl.POLYGON_OFFSET_FILL);
   }
 
+  plain(shape) {
+    this.attribute(0, shape.buffers.positions, 3);
+    this.attribute(1, shape.buffers.normals, 3);
+    this.attribute(2, null);
+    this.gl.uniform1i(this.at.mode, 0);
+  }
+
+  // Values between two ends as colours; those below −0.5 have none.
+  heat(shape, range) {
+    const { perTriangle, buffers } = shape;
+    if (perTriangle) shape.spread();
+    this.attribute(0, perTriangle ? buffers.spread : buffers.positions, 3);
+    this.attribute(1, perTriangle ? buffers.spreadNormals : buffers.normals, 3);
+    this.attribute(2, buffers.values, 1);
+    this.gl.uniform2f(this.at.range, ...range);
+    this.gl.uniform1i(this.at.mode, 2);
+  }
+
   lines(shape, line, alpha) {
     const { gl, at } = this;
     gl.enable(gl.BLEND);
@@ -179,8 +220,7 @@ export class Renderer {
     this.attribute(0, shape.buffers.positions, 3);
     this.attribute(1, null);
     this.attribute(2, null);
-    // Where there are more edges than pixels between them, they would blacken the shape.
-    this.colour(line, alpha * Math.max(0.06, 0.55 * Math.min(1, 40000 / shape.edges.length)));
+    this.colour(line, alpha);
     gl.uniform1i(at.mode, 1);
     gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, shape.buffers.edges);
     gl.drawElements(gl.LINES, shape.edges.length, gl.UNSIGNED_INT, 0);

@@ -15,6 +15,18 @@ const vertexNormals = (positions, triangles, out) => {
   return out;
 };
 
+// The mean length of some edges, spread over all.
+const meanLength = (positions, edges) => {
+  const stride = 2 * Math.max(1, Math.floor(edges.length / 4000));
+  let [sum, n] = [0, 0];
+  for (let k = 0; k < edges.length; k += stride) {
+    const [a, b] = [3 * edges[k], 3 * edges[k + 1]];
+    sum += Math.hypot(positions[a] - positions[b], positions[a + 1] - positions[b + 1], positions[a + 2] - positions[b + 2]);
+    n++;
+  }
+  return sum / Math.max(1, n);
+};
+
 export class Shape {
   constructor(gl, { positions, triangles, edges, normals }) {
     this.gl = gl;
@@ -26,6 +38,7 @@ export class Shape {
     this.index("triangles", triangles);
     this.index("edges", edges);
     this.givenNormals = normals;
+    this.meanEdge = meanLength(positions, edges);
     this.normals = normals ?? new Float32Array(positions.length);
     this.move(positions);
   }

@@ -1,6 +1,7 @@
 // The three views: cameras, pointers, markers.
 
 import { Camera } from "./camera.js";
+import { Probes } from "./probes.js";
 import { dot, subtract } from "./maths.js";
 
 // Pixels that a pointer may move and still be a click.
@@ -10,7 +11,7 @@ export const markColour = (id) => `hsl(${(id * 137.508) % 360} 62% 40%)`;
 
 class View {
   constructor(app, side) {
-    Object.assign(this, { app, side, camera: new Camera(), shape: null, isPending: false });
+    Object.assign(this, { app, side, camera: new Camera(), shape: null, isStale: true, isUnprobed: false });
     this.element = document.getElementById(`view-${side}`);
     this.element.innerHTML = '<div class="name"><b></b><span></span></div><div class="badge" hidden></div><div class="empty" hidden></div><div class="markers"></div>';
     [this.title, this.about] = this.element.querySelectorAll(".name b, .name span");
@@ -18,12 +19,14 @@ class View {
     this.empty = this.element.querySelector(".empty");
     this.markerLayer = this.element.querySelector(".markers");
     this.markers = new Map();
+    this.probes = new Probes(app.painter.renderer);
+    this.turnedAway = new Set();
     this.pointers = new Map();
     this.listen();
   }
 
   get box() {
-    const [outer, own] = [this.app.canvas.getBoundingClientRect(), this.element.getBoundingClientRect()];
+    const [outer, own] = [this.app.painter.canvas.getBoundingClientRect(), this.element.getBoundingClientRect()];
     return { left: own.left - outer.left, top: own.top - outer.top, width: own.width, height: own.height };
   }
 
@@ -77,16 +80,16 @@ class View {
     this.element.classList.add("is-turning");
     const after = this.pinch();
     if (before && after) {
-      this.app.moveCameras(this, (camera, view) => {
+      this.app.cameras.move(this, (camera, view) => {
         camera.zoom(before.apart / Math.max(1, after.apart));
         camera.pan(after.x - before.x, after.y - before.y, view.element.clientWidth, view.element.clientHeight);
       });
     } else if (event.ctrlKey || event.metaKey) {
-      this.app.moveCameras(this, (camera) => camera.zoom(Math.exp(dy * 0.008)));
+      this.app.cameras.move(this, (camera) => camera.zoom(Math.exp(dy * 0.008)));
     } else if (event.shiftKey || pointer.button === 2) {
-      this.app.moveCameras(this, (camera, view) => camera.pan(dx, dy, view.element.clientWidth, view.element.clientHeight));
+      this.app.cameras.move(this, (camera, view) => camera.pan(dx, dy, view.element.clientWidth, view.element.clientHeight));
     } else {
-      this.app.moveCameras(this, (camera) => camera.orbit(dx, dy));
+      this.app.cameras.move(this, (camera) => camera.orbit(dx, dy));
     }
   }
 
@@ -116,11 +119,11 @@ class View {
     const { clientWidth: width, clientHeight: height } = this.element;
     if (event.ctrlKey || isWheel) {
       const speed = event.deltaMode === 1 ? 0.05 : event.ctrlKey ? 0.01 : 0.0015;
-      this.app.moveCameras(this, (camera) => camera.zoom(Math.exp(event.deltaY * speed)));
+      this.app.cameras.move(this, (camera) => camera.zoom(Math.exp(event.deltaY * speed)));
     } else if (event.shiftKey) {
-      this.app.moveCameras(this, (camera) => camera.pan(-event.deltaX, -event.deltaY, width, height));
+      this.app.cameras.move(this, (camera) => camera.pan(-event.deltaX, -event.deltaY, width, height));
     } else {
-      this.app.moveCameras(this, (camera) => camera.orbit(-event.deltaX * 0.6, -event.deltaY * 0.6));
+      this.app.cameras.move(this, (camera) => camera.orbit(-event.deltaX * 0.6, -event.deltaY * 0.6));
     }
   }
 
@@ -129,6 +132,16 @@ class View {
     if (!this.shape) return null;
     if (this.side === "target") return landmark.target;
     return landmark.source && landmark.source.vertices.every((v) => 3 * v < this.shape.positions.length) ? this.shape.place(landmark.source) : null;
+  }
+
+  // Asks which landmarks are hidden; where nothing but points is drawn, the normal tells which look away.
+  probe(landmarks, isPointed) {
+    const places = new Map(landmarks.map((l) => [l.id, this.place(l)]).filter(([, place]) => place));
+    const { eye } = this.camera;
+    const isAway = ({ point, normal }) => dot(normal, subtract(eye, point)) < 0;
+    const isSparse = isPointed || this.shape?.isCloud;
+    this.turnedAway = new Set([...places].filter(([, place]) => isSparse && isAway(place)).map(([id]) => id));
+    this.probes.ask(new Map([...places].map(([id, place]) => [id, place.point])), eye);
   }
 
   showMarkers(landmarks, chosen) {
@@ -140,13 +153,12 @@ class View {
       seen.add(landmark.id);
       const marker = this.markers.get(landmark.id) ?? this.addMarker(landmark.id);
       const label = landmark.name || `landmark ${k + 1}`;
-      const isFacing = dot(place.normal, subtract(this.camera.eye, place.point)) >= 0 || dot(place.normal, place.normal) === 0;
-      marker.style.transform = `translate(${at.x}px, ${at.y}px)`;
+      marker.style.translate = `${at.x}px ${at.y}px`;
       marker.textContent = k + 1;
       marker.title = `${label}, ${landmark.kind}`;
       marker.setAttribute("aria-label", `${label} on the ${this.side}`);
       marker.classList.toggle("is-rigid", landmark.kind === "rigid");
-      marker.classList.toggle("is-behind", !isFacing);
+      marker.classList.toggle("is-behind", this.probes.hidden.has(landmark.id) || this.turnedAway.has(landmark.id));
       marker.classList.toggle("is-chosen", landmark.id === chosen);
       marker.classList.toggle("is-half", !landmark.source || !landmark.target);
     });

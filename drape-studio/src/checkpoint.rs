@@ -3,8 +3,8 @@
 //! | bytes | what |
 //! |---|---|
 //! | 8 | `DRAPERUN` |
-//! | 8 | length of the log, u64, little-endian |
-//! | … | the log as JSON |
+//! | 8 | length of what follows, u64, little-endian |
+//! | … | the log and the curves, as JSON |
 //! | … | the state of the drape |
 
 use std::fs;
@@ -13,10 +13,27 @@ use std::path::{Path, PathBuf};
 use anyhow::{ensure, Context as _, Result};
 use mesh_core::io::write_atomic;
 use neural_drape::DrapeState;
+use serde::{Deserialize, Serialize};
 
+use crate::hub::Curve;
 use crate::session::RunLog;
 
 const MAGIC: &[u8; 8] = b"DRAPERUN";
+
+/// A drape in progress.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Checkpoint {
+    pub(crate) story: Story,
+    pub(crate) state: DrapeState,
+}
+
+/// What happened to it so far.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Story {
+    pub(crate) log: RunLog,
+    pub(crate) curves: Vec<Curve>,
+}
 
 /// Where the drape of a session file is kept.
 pub(crate) fn path_beside(session: &Path) -> PathBuf {
@@ -24,32 +41,32 @@ pub(crate) fn path_beside(session: &Path) -> PathBuf {
 }
 
 /// Writes a drape, all or nothing.
-pub(crate) fn write(path: &Path, log: &RunLog, state: &DrapeState) -> Result<()> {
-    let log = serde_json::to_vec(log)?;
+pub(crate) fn write(path: &Path, checkpoint: &Checkpoint) -> Result<()> {
+    let story = serde_json::to_vec(&checkpoint.story)?;
     let mut bytes = MAGIC.to_vec();
-    bytes.extend((log.len() as u64).to_le_bytes());
-    bytes.extend(log);
-    bytes.extend(state.as_bytes());
+    bytes.extend((story.len() as u64).to_le_bytes());
+    bytes.extend(story);
+    bytes.extend(checkpoint.state.as_bytes());
     Ok(write_atomic(path, &bytes)?)
 }
 
 /// Reads what [`write`] wrote.
-pub(crate) fn read(path: &Path) -> Result<(RunLog, DrapeState)> {
+pub(crate) fn read(path: &Path) -> Result<Checkpoint> {
     let bytes = fs::read(path).with_context(|| format!("{}: cannot be read", path.display()))?;
     parse(&bytes).with_context(|| path.display().to_string())
 }
 
-fn parse(bytes: &[u8]) -> Result<(RunLog, DrapeState)> {
+fn parse(bytes: &[u8]) -> Result<Checkpoint> {
     let (magic, rest) = bytes.split_first_chunk::<8>().context("is cut off")?;
     ensure!(magic == MAGIC, "is not a drape in progress");
     let (length, rest) = rest.split_first_chunk::<8>().context("is cut off")?;
     let length = usize::try_from(u64::from_le_bytes(*length)).context("is damaged")?;
     ensure!(length <= rest.len(), "is cut off");
-    let (log, state) = rest.split_at(length);
-    Ok((
-        serde_json::from_slice(log).context("is damaged")?,
-        DrapeState::from_bytes(state.to_vec()),
-    ))
+    let (story, state) = rest.split_at(length);
+    Ok(Checkpoint {
+        story: serde_json::from_slice(story).context("is damaged")?,
+        state: DrapeState::from_bytes(state.to_vec()),
+    })
 }
 
 #[cfg(test)]
@@ -67,9 +84,16 @@ mod tests {
             events: Vec::new(),
             iteration: 7,
         };
-        let state = DrapeState::from_bytes(vec![1, 2, 3]);
-        write(&path, &log, &state).unwrap();
-        assert_eq!(read(&path).unwrap(), (log, state));
+        let curves = vec![Curve {
+            name: "loss".to_owned(),
+            points: vec![(0, 0.1 + 0.2), (1, 1e-300)],
+        }];
+        let checkpoint = Checkpoint {
+            story: Story { log, curves },
+            state: DrapeState::from_bytes(vec![1, 2, 3]),
+        };
+        write(&path, &checkpoint).unwrap();
+        assert_eq!(read(&path).unwrap(), checkpoint);
         let bytes = fs::read(&path).unwrap();
         for n in [0, 7, 12, 30] {
             assert!(parse(&bytes[..n]).is_err(), "{n} bytes");

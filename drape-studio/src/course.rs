@@ -3,52 +3,88 @@
 use anyhow::{Context as _, Result};
 use mesh_core::{Landmark, Positions};
 use mesh_init::InitInput;
+use neural_drape::network::NetworkMap;
 use neural_drape::{Drape, DrapeConfig, DrapeInput, DrapeState, Regions, StepReport};
 
 use crate::session::{landmarks, Change, Event, Mark, RunLog};
-use crate::{Scene, Settings, Toolbox};
+use crate::{Parts, Scene, Settings, Toolbox};
 
-/// Changed landmarks get at least this share of the settings' iterations (the paper: 500 of 1500).
+/// A drape that is changed gets at least this share of the settings' iterations (the paper: 500 of 1500).
 const MORE_ITERATIONS: (usize, usize) = (1, 3);
 
 /// What a course starts from.
-pub(crate) struct Start {
+pub(crate) struct Start<'a> {
+    scene: &'a Scene,
+    toolbox: &'a dyn Toolbox,
     pub(crate) settings: Settings,
     pub(crate) initial: Positions,
     landmarks: Vec<Landmark>,
+    parts: Parts,
     regions: Regions,
 }
 
-impl Start {
+impl<'a> Start<'a> {
     /// Deforms the source for the run of `log`.
-    pub(crate) fn new(scene: &Scene, toolbox: &dyn Toolbox, log: &RunLog) -> Result<Self> {
+    pub(crate) fn new(scene: &'a Scene, toolbox: &'a dyn Toolbox, log: &RunLog) -> Result<Self> {
         let settings = toolbox.settings(&log.settings)?;
         let landmarks = landmarks(&log.landmarks);
         let initial = toolbox.deform(scene, &landmarks, &settings)?.positions;
         let (regions, _) = toolbox.regions(scene, &log.parts)?;
         Ok(Self {
+            scene,
+            toolbox,
             settings,
             initial,
             landmarks,
+            parts: log.parts.clone(),
             regions,
         })
+    }
+
+    /// The drape at its start.
+    fn drape(&self) -> Result<Drape<'_>> {
+        let input = DrapeInput {
+            triangulation: &self.scene.source.triangulation,
+            rest: &self.scene.source.rest,
+            initial: &self.initial,
+            target: self.scene.target.parts.over.as_ref(),
+            landmarks: &self.landmarks,
+        };
+        let mut drape = Drape::new(input, self.settings.config.clone())?;
+        if !self.regions.is_none() {
+            drape.set_regions(&self.regions)?;
+        }
+        Ok(drape)
+    }
+
+    /// The drape of `log` in a state that it had come to at the end of the log.
+    fn drape_in(&self, state: &DrapeState, log: &RunLog) -> Result<Drape<'_>> {
+        let mut drape = self.drape()?;
+        drape.set_landmarks(&landmarks(log.last_landmarks()))?;
+        if log.last_parts() != &self.parts {
+            drape.set_regions(&self.regions(log.last_parts())?)?;
+        }
+        drape.restore(state)?;
+        Ok(drape)
+    }
+
+    fn regions(&self, parts: &Parts) -> Result<Regions> {
+        Ok(self.toolbox.regions(self.scene, parts)?.0)
     }
 }
 
 /// A drape and its log.
 pub(crate) struct Course<'a> {
-    scene: &'a Scene,
-    start: &'a Start,
+    start: &'a Start<'a>,
     drape: Drape<'a>,
     log: RunLog,
 }
 
 impl<'a> Course<'a> {
-    /// The drape at its start. Of `log`, only settings and first landmarks count.
-    pub(crate) fn new(scene: &'a Scene, start: &'a Start, log: RunLog) -> Result<Self> {
+    /// The drape at its start. Of `log`, only what it started with counts.
+    pub(crate) fn new(start: &'a Start<'a>, log: RunLog) -> Result<Self> {
         Ok(Self {
-            drape: fresh(scene, start)?,
-            scene,
+            drape: start.drape()?,
             start,
             log: RunLog {
                 events: Vec::new(),
@@ -59,38 +95,29 @@ impl<'a> Course<'a> {
     }
 
     /// The drape of `log` as it was when `state` was saved, at the end of the log.
-    pub(crate) fn restored(
-        scene: &'a Scene,
-        start: &'a Start,
-        log: RunLog,
-        state: &DrapeState,
-    ) -> Result<Self> {
-        let mut drape = fresh(scene, start)?;
-        drape.set_landmarks(&landmarks(log.last_landmarks()))?;
-        drape.restore(state)?;
+    pub(crate) fn restored(start: &'a Start<'a>, log: RunLog, state: &DrapeState) -> Result<Self> {
         let mut course = Self {
-            drape,
-            scene,
+            drape: start.drape_in(state, &log)?,
             start,
             log,
         };
-        course.log.iteration = course.drape.iteration();
         course.note(Change::Rebuilt);
         Ok(course)
     }
 
-    /// Does everything again that is in `log`.
+    /// Does everything again that is in `log`; `show` sees every step and can end it with an error.
     pub(crate) fn replayed(
-        scene: &'a Scene,
-        start: &'a Start,
+        start: &'a Start<'a>,
         log: &RunLog,
-        mut show: impl FnMut(&StepReport),
+        mut show: impl FnMut(&StepReport) -> Result<()>,
     ) -> Result<Self> {
-        let mut course = Self::new(scene, start, log.clone())?;
+        let mut course = Self::new(start, log.clone())?;
         for event in &log.events {
             course.advance(event.iteration, &mut show)?;
             match &event.change {
-                Change::Landmarks(marks) => course.change(marks.clone())?,
+                Change::Landmarks(marks) => course.mark(marks.clone())?,
+                Change::Parts(parts) => course.treat(parts.clone())?,
+                Change::Extended(n) => course.extend(*n),
                 Change::Rebuilt => course.rebuild()?,
             }
         }
@@ -98,10 +125,14 @@ impl<'a> Course<'a> {
         Ok(course)
     }
 
-    fn advance(&mut self, iteration: usize, mut show: impl FnMut(&StepReport)) -> Result<()> {
+    fn advance(
+        &mut self,
+        iteration: usize,
+        mut show: impl FnMut(&StepReport) -> Result<()>,
+    ) -> Result<()> {
         while self.drape.iteration() < iteration {
             let step = self.step()?;
-            show(&step.context("the session goes on after the end of its run")?);
+            show(&step.context("the session goes on after the end of its run")?)?;
         }
         Ok(())
     }
@@ -116,30 +147,45 @@ impl<'a> Course<'a> {
     /// Goes on with other landmarks: they deform the present shape, and the run gets more iterations if few are left.
     ///
     /// Source: Mesh Draping, Interactive Mode.
-    pub(crate) fn change(&mut self, marks: Vec<Mark>) -> Result<()> {
+    pub(crate) fn mark(&mut self, marks: Vec<Mark>) -> Result<()> {
         let landmarks = landmarks(&marks);
         let present = self.drape.positions();
-        let moved = adjusted(self.scene, &landmarks, &present)?;
+        let moved = adjusted(self.start.scene, &landmarks, &present)?;
         self.drape.set_landmarks(&landmarks)?;
         self.drape
             .displace(&moved.iter().zip(&present).map(|(m, p)| m - p).collect())?;
+        self.ensure_time();
+        self.note(Change::Landmarks(marks));
+        Ok(())
+    }
 
+    /// Goes on with other parts free and rigid; likewise.
+    pub(crate) fn treat(&mut self, parts: Parts) -> Result<()> {
+        let regions = self.start.regions(&parts)?;
+        self.drape.set_regions(&regions)?;
+        self.ensure_time();
+        self.note(Change::Parts(parts));
+        Ok(())
+    }
+
+    /// Gives the run more iterations.
+    pub(crate) fn extend(&mut self, n_iterations: usize) {
+        self.drape.extend(n_iterations);
+        self.note(Change::Extended(n_iterations));
+    }
+
+    /// What changed gets time to settle.
+    fn ensure_time(&mut self) {
         let left = self.drape.n_iterations() - self.drape.iteration();
         let least = more_iterations(&self.start.settings.config);
         if left < least {
             self.drape.extend(least - left);
         }
-        self.note(Change::Landmarks(marks));
-        Ok(())
     }
 
     /// Puts the drape together again from its own state, as after a restart.
     fn rebuild(&mut self) -> Result<()> {
-        let state = self.drape.state();
-        let mut drape = fresh(self.scene, self.start)?;
-        drape.set_landmarks(&landmarks(self.log.last_landmarks()))?;
-        drape.restore(&state)?;
-        self.drape = drape;
+        self.drape = self.start.drape_in(&self.drape.state(), &self.log)?;
         self.note(Change::Rebuilt);
         Ok(())
     }
@@ -157,6 +203,11 @@ impl<'a> Course<'a> {
         } else {
             self.drape.positions()
         }
+    }
+
+    /// The network that moves the vertices; none where there is none, or where it alone does not.
+    pub(crate) fn network(&self) -> Option<NetworkMap> {
+        self.drape.network()
     }
 
     pub(crate) fn state(&mut self) -> DrapeState {
@@ -187,22 +238,8 @@ pub(crate) fn adjusted(
     Ok(mesh_init::adjust(input, present)?)
 }
 
-fn fresh<'a>(scene: &'a Scene, start: &'a Start) -> Result<Drape<'a>> {
-    let input = DrapeInput {
-        triangulation: &scene.source.triangulation,
-        rest: &scene.source.rest,
-        initial: &start.initial,
-        target: scene.target.parts.over.as_ref(),
-        landmarks: &start.landmarks,
-    };
-    let mut drape = Drape::new(input, start.settings.config.clone())?;
-    if !start.regions.is_none() {
-        drape.set_regions(&start.regions)?;
-    }
-    Ok(drape)
-}
-
-fn more_iterations(config: &DrapeConfig) -> usize {
+/// How many iterations a drape gets that is to go on.
+pub(crate) fn more_iterations(config: &DrapeConfig) -> usize {
     let n: usize = config.stages.iter().map(|s| s.n_iterations).sum();
     (n * MORE_ITERATIONS.0 / MORE_ITERATIONS.1).max(1)
 }

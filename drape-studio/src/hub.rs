@@ -4,11 +4,13 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use axum::body::Bytes;
 use mesh_core::Positions;
+use neural_drape::network::NetworkMap;
 use neural_drape::StepReport;
-use serde_json::{json, Value};
+use serde::{Deserialize, Serialize};
 use tokio::sync::watch;
 
 use crate::display::position_bytes;
+use crate::session::RunLog;
 use crate::Scene;
 
 /// Points that a curve is sent with at most.
@@ -29,10 +31,24 @@ pub(crate) enum FrameKind {
 pub(crate) struct Frame {
     pub(crate) serial: u32,
     pub(crate) kind: FrameKind,
-    pub(crate) iteration: usize,
     pub(crate) positions: Arc<Positions>,
+    /// How a drape came to it; none for other shapes.
+    pub(crate) made: Option<Made>,
     /// The message that carries it: four u32 (1, serial, kind, iteration), then f32 positions.
     pub(crate) message: Bytes,
+}
+
+/// How a drape came to a shape.
+pub(crate) struct Made {
+    pub(crate) log: RunLog,
+    pub(crate) network: Option<NetworkMap>,
+}
+
+impl Frame {
+    /// How many iterations led to it.
+    pub(crate) fn iteration(&self) -> usize {
+        self.made.as_ref().map_or(0, |made| made.log.iteration)
+    }
 }
 
 /// The newest of everything.
@@ -53,9 +69,10 @@ struct Shared {
 }
 
 /// A figure over the iterations.
-struct Curve {
-    name: &'static str,
-    points: Vec<(usize, f64)>,
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Curve {
+    pub(crate) name: String,
+    pub(crate) points: Vec<(usize, f64)>,
 }
 
 impl Hub {
@@ -90,14 +107,24 @@ impl Hub {
         self.shared().scene.clone()
     }
 
-    /// Shows a shape. Where there is a drape, an initial shape comes too late and is not shown.
-    pub(crate) fn show(&self, scene: &Scene, kind: FrameKind, iteration: usize, x: Arc<Positions>) {
+    /// Shows what landmarks would give. Where there is a drape, an initial shape comes too late and is not shown.
+    pub(crate) fn show(&self, scene: &Scene, kind: FrameKind, x: Arc<Positions>) {
+        self.put(scene, kind, x, None);
+    }
+
+    /// Shows a drape as far as it is.
+    pub(crate) fn show_drape(&self, scene: &Scene, x: Arc<Positions>, made: Made) {
+        self.put(scene, FrameKind::Draped, x, Some(made));
+    }
+
+    fn put(&self, scene: &Scene, kind: FrameKind, x: Arc<Positions>, made: Option<Made>) {
         let mut shared = self.shared();
         if kind == FrameKind::Initial && shared.draped.is_some() {
             return;
         }
         shared.serial = shared.serial.wrapping_add(1);
         let serial = shared.serial;
+        let iteration = made.as_ref().map_or(0, |made| made.log.iteration);
         let mut message = Vec::with_capacity(16 + 12 * x.len());
         for n in [1, serial, kind as u32, iteration as u32] {
             message.extend(n.to_le_bytes());
@@ -106,8 +133,8 @@ impl Hub {
         let frame = Arc::new(Frame {
             serial,
             kind,
-            iteration,
             positions: x,
+            made,
             message: message.into(),
         });
         if kind == FrameKind::Draped {
@@ -152,31 +179,39 @@ impl Hub {
     }
 
     /// Records a figure of the judge.
-    pub(crate) fn record(&self, name: &'static str, iteration: usize, value: f64) {
+    pub(crate) fn record(&self, name: &str, iteration: usize, value: f64) {
         self.shared().record(name, iteration, value);
     }
 
     /// Every curve, thinned out.
-    pub(crate) fn curves(&self) -> Value {
+    pub(crate) fn curves(&self) -> Vec<Curve> {
         let shared = self.shared();
         let thin = |curve: &Curve| {
             let stride = curve.points.len().div_ceil(MAX_CURVE).max(1);
             let last = curve.points.len().saturating_sub(1);
             let kept = curve.points.iter().enumerate();
             let kept = kept.filter(|(k, _)| k % stride == 0 || *k == last);
-            json!({ "name": curve.name, "points": kept.map(|(_, p)| p).collect::<Vec<_>>() })
+            Curve {
+                name: curve.name.clone(),
+                points: kept.map(|(_, &p)| p).collect(),
+            }
         };
         shared.curves.iter().map(thin).collect()
+    }
+
+    /// The curves of a drape that goes on.
+    pub(crate) fn set_curves(&self, curves: Vec<Curve>) {
+        self.shared().curves = curves;
     }
 }
 
 impl Shared {
-    fn record(&mut self, name: &'static str, iteration: usize, value: f64) {
+    fn record(&mut self, name: &str, iteration: usize, value: f64) {
         let known = self.curves.iter_mut().find(|curve| curve.name == name);
         match known {
             Some(curve) => curve.points.push((iteration, value)),
             None => self.curves.push(Curve {
-                name,
+                name: name.to_owned(),
                 points: vec![(iteration, value)],
             }),
         }

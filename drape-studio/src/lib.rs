@@ -32,4 +32,6 @@ mod toolbox;
 pub use replay::{replay, Replayed};
 pub use scene::{Scene, Source, Target};
 pub use studio::{Options, Studio};
-pub use toolbox::{Deformed, Finished, Parts, Settings, TargetParts, Toolbox};
+pub use toolbox::{
+    Deformed, Finished, InnerPart, Parts, Settings, TargetParts, Toolbox, Treatment,
+};

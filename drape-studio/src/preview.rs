@@ -3,6 +3,8 @@
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::mpsc::Sender;
 use std::sync::Arc;
+use std::thread;
+use std::time::{Duration, Instant};
 
 use mesh_core::{Landmark, Positions};
 
@@ -13,6 +15,9 @@ use crate::hub::{FrameKind, Hub};
 use crate::latest::Latest;
 use crate::rough::{rough, LARGE};
 use crate::{Scene, Settings, Toolbox};
+
+/// The exact shape of a large source is found once nothing was edited for this long.
+const SETTLED: Duration = Duration::from_millis(500);
 
 /// What is to be shown of the landmarks.
 #[derive(Clone)]
@@ -45,6 +50,9 @@ pub(crate) fn preview(
     desk: Sender<Inbox>,
 ) -> Latest<PreviewJob> {
     Latest::start(move |job: PreviewJob| {
+        if !job.is_settled() {
+            return;
+        }
         let outcome = show(&job, toolbox.as_ref(), &hub)
             .map(|mut notes| {
                 let warnings = toolbox.examine(&job.scene, &job.landmarks);
@@ -65,9 +73,10 @@ pub(crate) fn rough_preview(hub: Arc<Hub>) -> Latest<PreviewJob> {
             Shown::Initial => (FrameKind::Initial, None),
             Shown::Adjusted(present) => (FrameKind::Adjusted, Some(present.as_ref())),
         };
-        if job.scene.source.rest.len() > LARGE && job.is_newest() {
-            if let Some(x) = rough(&job.scene, &job.landmarks, present) {
-                hub.show(&job.scene, kind, 0, Arc::new(x));
+        if job.is_large() && job.is_newest() {
+            let x = rough(&job.scene, &job.landmarks, present);
+            if job.is_newest() {
+                hub.show(&job.scene, kind, Arc::new(x));
             }
         }
     })
@@ -76,6 +85,19 @@ pub(crate) fn rough_preview(hub: Arc<Hub>) -> Latest<PreviewJob> {
 impl PreviewJob {
     fn is_newest(&self) -> bool {
         self.newest.load(Ordering::SeqCst) == self.number
+    }
+
+    fn is_large(&self) -> bool {
+        self.scene.source.rest.len() > LARGE
+    }
+
+    /// Whether no other edit follows soon: what takes long is then begun.
+    fn is_settled(&self) -> bool {
+        let began = Instant::now();
+        while self.is_large() && self.is_newest() && began.elapsed() < SETTLED {
+            thread::sleep(SETTLED / 20);
+        }
+        self.is_newest()
     }
 }
 
@@ -98,7 +120,7 @@ fn show(job: &PreviewJob, toolbox: &dyn Toolbox, hub: &Hub) -> anyhow::Result<Ve
         return Ok(assumed);
     }
     let x = Arc::new(x);
-    hub.show(&job.scene, kind, 0, Arc::clone(&x));
+    hub.show(&job.scene, kind, Arc::clone(&x));
     job.figures.ask(FiguresJob {
         scene: job.scene.clone(),
         positions: x,

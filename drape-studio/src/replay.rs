@@ -5,7 +5,8 @@ use std::sync::Arc;
 
 use anyhow::{Context as _, Result};
 use mesh_core::{Landmark, Positions};
-use neural_drape::StepReport;
+use neural_drape::network::NetworkMap;
+use neural_drape::{StepReport, Warp, WarpInput};
 
 use crate::course::{Course, Start};
 use crate::session::{self, landmarks};
@@ -23,6 +24,25 @@ pub struct Replayed {
     pub initial: Positions,
     /// The result.
     pub draped: Positions,
+    /// The network behind it; none where there is none, or where it alone did not come to the result.
+    pub network: Option<NetworkMap>,
+}
+
+impl Replayed {
+    /// What the drape did to space.
+    ///
+    /// # Errors
+    /// The map cannot be made of these shapes.
+    pub fn warp(&self) -> Result<Warp> {
+        let source = &self.scene.source;
+        Ok(Warp::new(WarpInput {
+            triangulation: &source.triangulation,
+            rest: &source.rest,
+            initial: &self.initial,
+            draped: &self.draped,
+            network: self.network.clone(),
+        })?)
+    }
 }
 
 /// Does the drape of a session file again, to the bit; `show` sees every step.
@@ -33,7 +53,7 @@ pub struct Replayed {
 pub fn replay(
     path: &Path,
     toolbox: &dyn Toolbox,
-    show: impl FnMut(&StepReport),
+    mut show: impl FnMut(&StepReport),
 ) -> Result<Replayed> {
     let session = session::read(path)?;
     let name = || path.display().to_string();
@@ -58,14 +78,19 @@ pub fn replay(
         .with_context(name)?;
 
     let start = Start::new(&scene, toolbox, log)?;
-    let draped = Course::replayed(&scene, &start, log, show)
-        .with_context(name)?
-        .positions();
+    let course = Course::replayed(&start, log, |step| {
+        show(step);
+        Ok(())
+    })
+    .with_context(name)?;
+    let (draped, network) = (course.positions(), course.network());
+    drop(course);
     Ok(Replayed {
         landmarks: landmarks(log.last_landmarks()),
-        settings: start.settings,
-        initial: start.initial,
+        settings: start.settings.clone(),
+        initial: start.initial.clone(),
         draped,
+        network,
         scene,
     })
 }

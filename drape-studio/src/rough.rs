@@ -1,9 +1,10 @@
 //! A first idea of a deformation, for sources whose real one takes long.
+//!
+//! It is found on one thread, so that it does not wait for others that have much to do.
 
 use mesh_core::{Landmark, Point3, Positions, Vector3};
 use mesh_init::{fit_affine, point_pairs, BoundsPair, SimilarityPrior};
 use mesh_operators::SpaceExtension;
-use rayon::prelude::*;
 
 use crate::Scene;
 
@@ -13,12 +14,12 @@ pub(crate) const LARGE: usize = 20_000;
 const MAX_CENTRES: usize = 200;
 
 /// `present`, or the source where the affine map of its landmarks puts it, with what the landmarks still miss spread
-/// through space. They are met; the surface itself is not asked. None without landmarks.
+/// through space. They are met; the surface itself is not asked.
 pub(crate) fn rough(
     scene: &Scene,
     landmarks: &[Landmark],
     present: Option<&Positions>,
-) -> Option<Positions> {
+) -> Positions {
     let source = &scene.source;
     let placed = match present {
         Some(present) => present.clone(),
@@ -41,11 +42,9 @@ pub(crate) fn rough(
         .zip(&from)
         .map(|(l, p)| l.target - p)
         .collect();
-    let field = SpaceExtension::new(&from, &missed, MAX_CENTRES).ok()?;
-    let moved: Vec<Point3> = placed
-        .as_slice()
-        .par_iter()
-        .map(|p| p + field.displacement_at(p))
-        .collect();
-    Some(Positions::from(moved))
+    // There is no field without landmarks.
+    match SpaceExtension::new(&from, &missed, MAX_CENTRES) {
+        Ok(field) => placed.map(|p| p + field.displacement_at(p)),
+        Err(_) => placed,
+    }
 }

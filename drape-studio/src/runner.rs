@@ -2,21 +2,21 @@
 
 use std::path::PathBuf;
 use std::sync::mpsc::{channel, Receiver, Sender, TryRecvError};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use anyhow::Result;
+use anyhow::{ensure, Result};
 use neural_drape::{DrapeState, StepReport};
 use serde_json::json;
 
-use crate::checkpoint;
-use crate::course::{Course, Start};
+use crate::checkpoint::{self, Checkpoint, Story};
+use crate::course::{more_iterations, Course, Start};
 use crate::figures::FiguresJob;
-use crate::hub::{FrameKind, Hub};
+use crate::hub::{Hub, Made};
 use crate::latest::Latest;
 use crate::session::{landmarks, Mark, RunLog};
-use crate::{Scene, Toolbox};
+use crate::{Parts, Scene, Toolbox};
 
 /// Shapes are shown at most this often.
 const FRAME_INTERVAL: Duration = Duration::from_millis(33);
@@ -30,7 +30,10 @@ pub(crate) enum Order {
     Go,
     Pause,
     Step,
-    Landmarks(Vec<Mark>),
+    Marks(Vec<Mark>),
+    Parts(Parts),
+    /// It gets more iterations.
+    Extend,
 }
 
 /// What the thread tells.
@@ -39,7 +42,7 @@ pub(crate) enum News {
     Paused(RunLog),
     /// It goes.
     Running,
-    /// Landmarks changed.
+    /// Something was done to it.
     Changed(RunLog),
     /// The last iteration is done.
     Finished(RunLog),
@@ -68,11 +71,12 @@ pub(crate) struct Runner {
 
 impl Drop for Runner {
     fn drop(&mut self) {
-        *self
-            .is_wanted
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner) = false;
+        *lock(&self.is_wanted) = false;
     }
+}
+
+fn lock(is_wanted: &Mutex<bool>) -> MutexGuard<'_, bool> {
+    is_wanted.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 impl Runner {
@@ -106,10 +110,15 @@ fn run(
 ) -> Result<()> {
     let start = Start::new(&parts.scene, parts.toolbox.as_ref(), &parts.log)?;
     let course = match &parts.state {
-        Some(state) => Course::restored(&parts.scene, &start, parts.log.clone(), state)?,
-        None => Course::replayed(&parts.scene, &start, &parts.log, |_| ())?,
+        Some(state) => Course::restored(&start, parts.log.clone(), state)?,
+        None => Course::replayed(&start, &parts.log, |step| {
+            ensure!(*lock(is_wanted), "the drape was given up");
+            parts.hub.record_step(step);
+            Ok(())
+        })?,
     };
     let mut run = Run {
+        n_more: more_iterations(&start.settings.config),
         parts,
         is_wanted,
         course,
@@ -130,6 +139,7 @@ struct Run<'a> {
     parts: &'a RunnerParts,
     is_wanted: &'a Mutex<bool>,
     course: Course<'a>,
+    n_more: usize,
     tell: &'a dyn Fn(News),
     shown: Instant,
     saved: Instant,
@@ -169,7 +179,7 @@ impl Run<'_> {
                         self.rest(News::Paused(self.course.log().clone()))?;
                     }
                 }
-                Some(Order::Landmarks(marks)) => self.change(marks)?,
+                Some(order) => self.change(order)?,
             }
         }
     }
@@ -199,8 +209,18 @@ impl Run<'_> {
         Ok(!is_over)
     }
 
-    fn change(&mut self, marks: Vec<Mark>) -> Result<()> {
-        self.course.change(marks)?;
+    /// Does something to the drape; what holds already is not done again.
+    fn change(&mut self, order: Order) -> Result<()> {
+        match order {
+            Order::Marks(marks) if marks != self.course.log().last_landmarks() => {
+                self.course.mark(marks)?;
+            }
+            Order::Parts(parts) if parts != *self.course.log().last_parts() => {
+                self.course.treat(parts)?;
+            }
+            Order::Extend => self.course.extend(self.n_more),
+            _ => return Ok(()),
+        }
         self.save()?;
         self.show();
         self.tell_progress(None);
@@ -219,16 +239,14 @@ impl Run<'_> {
 
     fn show(&mut self) {
         let Self { parts, course, .. } = self;
-        let iteration = course.log().iteration;
         let x = Arc::new(course.positions());
-        let is_wanted = self
-            .is_wanted
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner);
+        let made = Made {
+            log: course.log().clone(),
+            network: course.network(),
+        };
+        let is_wanted = lock(self.is_wanted);
         if *is_wanted {
-            parts
-                .hub
-                .show(&parts.scene, FrameKind::Draped, iteration, x);
+            parts.hub.show_drape(&parts.scene, x, made);
         }
         self.shown = Instant::now();
     }
@@ -246,13 +264,16 @@ impl Run<'_> {
     }
 
     fn save(&mut self) -> Result<()> {
-        let state = self.course.state();
-        let is_wanted = self
-            .is_wanted
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner);
+        let checkpoint = Checkpoint {
+            state: self.course.state(),
+            story: Story {
+                log: self.course.log().clone(),
+                curves: self.parts.hub.curves(),
+            },
+        };
+        let is_wanted = lock(self.is_wanted);
         if *is_wanted {
-            checkpoint::write(&self.parts.checkpoint, self.course.log(), &state)?;
+            checkpoint::write(&self.parts.checkpoint, &checkpoint)?;
         }
         self.saved = Instant::now();
         Ok(())
@@ -272,10 +293,7 @@ impl Run<'_> {
             "terms": terms,
         });
         let text = Arc::from(message.to_string());
-        let is_wanted = self
-            .is_wanted
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner);
+        let is_wanted = lock(self.is_wanted);
         if *is_wanted {
             self.parts.hub.progress.send_replace(text);
         }

@@ -7,7 +7,7 @@ use anyhow::{ensure, Context as _};
 use mesh_core::io::{self, MeshFile, NamedFaces};
 use mesh_core::{
     Aabb, HalfedgeMesh, Location, MeshPoint, Point3, PolygonSoup, Positions, TargetSurface,
-    TriangleBvh, Triangulation, UnitFrame, Vector3, Weld,
+    TriangleBvh, Triangulation, UnitFrame, Vector3, VertexData, VertexId, Weld,
 };
 
 use crate::display::Display;
@@ -139,6 +139,22 @@ impl Source {
         let named = lists.into_iter().flatten().filter(|n| n.name == name);
         let ranges = named.flat_map(|n| &n.faces);
         ranges.map(|r| [end(r.start), end(r.end)]).collect()
+    }
+
+    /// The triangles all of whose corners are among some vertices, as ranges of rows.
+    pub(crate) fn triangles_within(&self, vertices: &[VertexId]) -> Vec<[usize; 2]> {
+        let mut is_in = VertexData::new(self.rest.len(), false);
+        vertices.iter().for_each(|&v| is_in[v] = true);
+        let triangles = self.triangulation.triangles().iter().enumerate();
+        let within = triangles.filter(|(_, t)| t.iter().all(|&v| is_in[v]));
+        let mut ranges: Vec<[usize; 2]> = Vec::new();
+        for (row, _) in within {
+            match ranges.last_mut() {
+                Some([_, end]) if *end == row => *end += 1,
+                _ => ranges.push([row, row + 1]),
+            }
+        }
+        ranges
     }
 
     /// The first row of the file that is vertex `v`.

@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use mesh_core::{Landmark, Positions, TargetSurface};
+use mesh_core::{Landmark, Positions, TargetSurface, VertexId};
 use neural_drape::{DrapeConfig, Regions};
 use serde::{Deserialize, Serialize};
 
@@ -36,6 +36,36 @@ pub struct Parts {
     pub free: Vec<String>,
     /// Those whose pieces move as one body each.
     pub rigid: Vec<String>,
+    /// Inner parts that are draped like the rest, although nobody sees them.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub draped: Vec<String>,
+}
+
+/// How a part is draped.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Treatment {
+    /// Like the rest.
+    Draped,
+    /// It attracts nothing and is carried along.
+    Free,
+    /// Its pieces move as one body each.
+    Rigid,
+}
+
+/// An inner part of a source: no ray from outside reaches it.
+#[derive(Clone, Debug)]
+pub struct InnerPart {
+    /// Its name in [`Parts`].
+    pub name: String,
+    /// What it is, in words.
+    pub about: String,
+    /// Its vertices.
+    pub vertices: Vec<VertexId>,
+    /// How it had best be treated.
+    pub proposed: Treatment,
+    /// How it is treated as long as nobody says otherwise.
+    pub unasked: Treatment,
 }
 
 /// The source brought to its landmarks.
@@ -94,6 +124,12 @@ pub trait Toolbox: Send + Sync {
     /// # Errors
     /// The source has no such part, or nothing would be left to drape.
     fn regions(&self, scene: &Scene, parts: &Parts) -> anyhow::Result<(Regions, Vec<String>)>;
+
+    /// The inner parts of the source, largest first.
+    ///
+    /// # Errors
+    /// The scene cannot be worked on.
+    fn inner_parts(&self, scene: &Scene) -> anyhow::Result<Vec<InnerPart>>;
 
     /// Everything suspicious about the inputs and landmarks, in words.
     fn examine(&self, scene: &Scene, landmarks: &[Landmark]) -> Vec<String>;

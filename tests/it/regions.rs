@@ -102,16 +102,26 @@ fn landmarks() -> String {
     serde_json::json!({ "landmarks": entries }).to_string()
 }
 
+/// Names of the files in [`head_on_skin`].
+pub(crate) const HEAD: &str = "head.obj";
+pub(crate) const SKIN: &str = "skin.ply";
+
+/// A folder with the head, the skin and their landmarks.
+pub(crate) fn head_on_skin() -> Workplace {
+    let place = Workplace::new();
+    place.write(HEAD, &head_obj(&parts()));
+    place.write("head.json", &landmarks());
+    io::write_soup(place.path(SKIN), &target()).expect("the target is written");
+    place
+}
+
 /// The vertices of each part in the result.
 fn draped(options: &str) -> Vec<(Part, Vec<Point3>)> {
-    let place = Workplace::new();
-    place.write("head.obj", &head_obj(&parts()));
-    place.write("head.json", &landmarks());
+    let place = head_on_skin();
     place.write(
         "half.toml",
         "[[stages]]\nn_iterations = 60\n[[stages]]\nn_iterations = 60\n",
     );
-    io::write_soup(place.path("skin.ply"), &target()).expect("the target is written");
     place
         .drape(&format!(
             "transfer head.obj skin.ply -l head.json --config half.toml -o out.obj {options}"
@@ -203,8 +213,7 @@ fn eyes_stay_round_and_the_mouth_inside_with_and_without_names() {
 
 #[test]
 fn inspect_proposes_the_inner_pieces() {
-    let place = Workplace::new();
-    place.write("head.obj", &head_obj(&parts()));
+    let place = head_on_skin();
     let seen = place.drape("inspect head.obj --hidden inner.txt").well();
     assert_eq!(
         seen.stdout.matches("closed piece inside").count(),
@@ -215,13 +224,22 @@ fn inspect_proposes_the_inner_pieces() {
     assert!(seen.stdout.contains("open piece inside"), "{}", seen.stdout);
     let alone = place.drape("inspect head.obj --hidden").well();
     assert_eq!(alone.stdout, seen.stdout);
-    place.write("head.json", &landmarks());
-    io::write_soup(place.path("skin.ply"), &target()).expect("the target is written");
-    place
-        .drape(
-            "transfer head.obj skin.ply -l head.json --config short.toml -o out.obj --free inner.txt",
-        )
-        .well();
+    for part in ["--free inner.txt", "--free hidden:1 --draped hidden:4"] {
+        let line = "transfer head.obj skin.ply -l head.json --config short.toml -o out.obj";
+        place.drape(&format!("{line} {part}")).well();
+    }
+    assert!(
+        seen.stdout.contains("propose --rigid hidden:2"),
+        "{}",
+        seen.stdout
+    );
+    let line = "transfer head.obj skin.ply -l head.json -o out.obj --free hidden:5";
+    let wrong = place.drape(line);
+    assert!(
+        wrong.stderr.contains("there is no inner surface '5'"),
+        "{}",
+        wrong.stderr
+    );
 }
 
 #[test]

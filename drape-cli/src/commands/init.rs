@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 use std::process::ExitCode;
+use std::sync::Arc;
 
 use crate::gallery::{Gallery, ViewArgs};
 use crate::initial::{deform, Start};
@@ -56,7 +57,7 @@ pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
     }
     let landmarks = args.landmarks.as_deref();
     let mut pair = Pair::read(&args.source, &args.target, landmarks, args.weld.weld)?;
-    pair.file.set_morphs(args.morphs.morphs.into());
+    Arc::make_mut(&mut pair.file).set_morphs(args.morphs.morphs.into());
     pair.file.check_writable(&args.output)?;
     let truth = args
         .truth

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use anyhow::Context as _;
+use drape_studio::Treatment;
 use mesh_core::io::{self, write_atomic};
 
 use crate::gallery::ViewArgs;
@@ -97,21 +98,22 @@ fn proposals(source: &Source) -> (String, String) {
     if inner.is_empty() {
         text += "no inner surface: rays from outside reach everything\n";
     }
-    for part in &inner {
+    for (row, part) in inner.iter().enumerate() {
         let middle = part.vertices.iter().map(|&v| source.rest[v].coords);
         let middle = middle.sum::<mesh_core::Vector3>() / part.vertices.len() as f64;
-        let (what, how) = match (part.is_piece, part.is_closed) {
-            (true, true) => ("closed piece inside", "--rigid"),
-            (true, false) => ("open piece inside", "--free"),
-            (false, _) => ("inner lining", "--free"),
+        let how = match part.proposed() {
+            Treatment::Rigid => "--rigid",
+            _ => "--free",
         };
         let line = format!(
-            "{what}: {} vertices around ({:.4}, {:.4}, {:.4}), {:.1} % of the area; propose {how}",
+            "{}: {} vertices around ({:.4}, {:.4}, {:.4}), {:.1} % of the area; propose {how} hidden:{}",
+            part.kind(),
             part.vertices.len(),
             middle.x,
             middle.y,
             middle.z,
-            100.0 * part.share
+            100.0 * part.share,
+            row + 1
         );
         text += &format!("{line}\n");
         list += &format!("# {line}\n");

@@ -21,7 +21,7 @@ use clap::Subcommand;
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
     /// Drape a mesh over a target: the whole method, from files to a file
-    Transfer(transfer::Args),
+    Transfer(Box<transfer::Args>),
     /// Deform a mesh by its landmarks only
     Init(init::Args),
     /// Send other points through the map of a finished drape

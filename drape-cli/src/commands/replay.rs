@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use crate::output::{check_distinct, check_mesh, say};
+use crate::output::{check_distinct, check_mesh, check_writable, say};
 use crate::progress::Progress;
 use crate::toolbox::CommandLine;
 
@@ -14,11 +14,18 @@ pub(crate) struct Args {
     /// File to write: the source with its vertices moved
     #[arg(short, long, value_name = "OUT")]
     output: PathBuf,
+    /// Save the map, for `drape apply`
+    #[arg(long, value_name = "WARP")]
+    warp: Option<PathBuf>,
 }
 
 pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
     check_mesh(&args.output)?;
-    check_distinct(&args.output, &[&args.session])?;
+    let outputs = [Some(&args.output), args.warp.as_ref()];
+    for path in outputs.into_iter().flatten() {
+        check_writable(path)?;
+        check_distinct(path, &[&args.session])?;
+    }
     let mut progress = None;
     let replayed = drape_studio::replay(&args.session, &CommandLine::default(), |step| {
         progress
@@ -27,9 +34,16 @@ pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
     })?;
     drop(progress.map(Progress::finish));
     let (file, target) = (&replayed.scene.source.file, &replayed.scene.target.path);
-    check_distinct(&args.output, &[file.path(), target])?;
+    for path in outputs.into_iter().flatten() {
+        check_distinct(path, &[file.path(), target])?;
+    }
     let positions = replayed.scene.source.spread(&replayed.draped);
     file.write(&args.output, &positions)?;
-    say(&format!("wrote {}\n", args.output.display()))?;
+    if let Some(path) = &args.warp {
+        replayed.warp()?.save(path)?;
+    }
+    for path in outputs.into_iter().flatten() {
+        say(&format!("wrote {}\n", path.display()))?;
+    }
     Ok(ExitCode::SUCCESS)
 }

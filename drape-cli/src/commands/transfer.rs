@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::sync::Arc;
 
 use mesh_core::io::write_atomic;
 use mesh_core::Positions;
@@ -78,7 +79,7 @@ pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let mut pair = stages.time("reading", || {
         Pair::read(&args.source, &args.target, landmarks, args.weld.weld)
     })?;
-    pair.file.set_morphs(args.morphs.morphs.into());
+    Arc::make_mut(&mut pair.file).set_morphs(args.morphs.morphs.into());
     pair.file.check_writable(&args.output)?;
     let truth = args
         .truth

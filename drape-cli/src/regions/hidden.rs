@@ -1,5 +1,6 @@
 //! Inner surfaces: what no ray from outside reaches.
 
+use drape_studio::Treatment;
 use mesh_core::surface::is_exposed;
 use mesh_core::{measure, TriangleBvh, VertexData, VertexId};
 use neural_drape::Regions;
@@ -28,6 +29,69 @@ pub(crate) struct Inner {
     pub(crate) is_piece: bool,
     /// Whether it has no open boundary: a body, not a lining.
     pub(crate) is_closed: bool,
+}
+
+impl Inner {
+    /// How it had best be treated.
+    pub(crate) fn proposed(&self) -> Treatment {
+        if self.is_piece && self.is_closed {
+            Treatment::Rigid
+        } else {
+            Treatment::Free
+        }
+    }
+
+    /// What it is, in words.
+    pub(crate) fn kind(&self) -> &'static str {
+        match (self.is_piece, self.is_closed) {
+            (true, true) => "closed piece inside",
+            (true, false) => "open piece inside",
+            (false, _) => "inner lining",
+        }
+    }
+
+    /// Whether it is treated as proposed where nobody says otherwise and the target has nothing like it.
+    fn is_clear(&self) -> bool {
+        self.is_piece || self.share >= LINING_SHARE
+    }
+}
+
+/// The inner surfaces of a pair.
+pub(crate) struct Hidden {
+    /// Those of the source, largest first: `hidden:1`, `hidden:2` and so on.
+    pub(crate) inner: Vec<Inner>,
+    /// Share of the target's area that no ray from outside reaches.
+    of_target: f64,
+}
+
+impl Hidden {
+    pub(crate) fn of(pair: &Pair) -> Self {
+        let inner = inner_surfaces(&pair.source);
+        let of_target = if inner.is_empty() {
+            0.0
+        } else {
+            hidden_share(pair)
+        };
+        Self { inner, of_target }
+    }
+
+    /// How an inner surface of the source is treated where nobody names any.
+    pub(crate) fn unasked(&self, part: &Inner) -> Treatment {
+        let inside: f64 = self.clear().map(|i| i.share).sum();
+        if part.is_clear() && !self.has_counterpart(inside) {
+            part.proposed()
+        } else {
+            Treatment::Draped
+        }
+    }
+
+    fn clear(&self) -> impl Iterator<Item = &Inner> {
+        self.inner.iter().filter(|i| i.is_clear())
+    }
+
+    fn has_counterpart(&self, inside: f64) -> bool {
+        self.of_target >= COUNTERPART * inside
+    }
 }
 
 /// Separate pieces that lie mostly inside, and connected inner surfaces of the others, largest first.
@@ -84,37 +148,28 @@ pub(crate) fn inner_surfaces(source: &Source) -> Vec<Inner> {
     found
 }
 
-/// The vertices of all inner surfaces.
-pub(super) fn vertices(source: &Source) -> VertexData<bool> {
-    let mut part = VertexData::new(source.mesh.n_vertices(), false);
-    for v in inner_surfaces(source).iter().flat_map(|i| &i.vertices) {
-        part[*v] = true;
-    }
-    part
-}
-
-/// Makes inner surfaces free that no one named, closed pieces rigid; says so.
+/// Makes inner surfaces free that no one named, closed pieces rigid; says so. `is_draped` marks what stays attracted.
 ///
 /// Nothing is done where the target has inner surfaces of comparable size itself: they are draped over those.
-pub(super) fn add_inner_pieces(pair: &Pair, regions: &mut Regions) -> Vec<String> {
-    let source = &pair.source;
-    let is_named = |v: &VertexId| regions.rigid[*v] || regions.attraction[*v] == 0.0;
-    let inner: Vec<Inner> = inner_surfaces(source)
-        .into_iter()
-        .filter(|i| i.is_piece || i.share >= LINING_SHARE)
+pub(super) fn add_inner_pieces(
+    hidden: &Hidden,
+    is_draped: &VertexData<bool>,
+    regions: &mut Regions,
+) -> Vec<String> {
+    let is_named =
+        |v: &VertexId| regions.rigid[*v] || regions.attraction[*v] == 0.0 || is_draped[*v];
+    let inner: Vec<&Inner> = hidden
+        .clear()
         .filter(|i| !i.vertices.iter().any(is_named))
         .collect();
-    if inner.is_empty() {
-        return Vec::new();
-    }
     let inside: f64 = inner.iter().map(|i| i.share).sum();
-    if hidden_share(pair) >= COUNTERPART * inside {
+    if inner.is_empty() || hidden.has_counterpart(inside) {
         return Vec::new();
     }
     let (mut n_rigid, mut n_free, mut share) = (0, 0, 0.0);
     for part in inner {
         share += part.share;
-        if part.is_piece && part.is_closed {
+        if part.proposed() == Treatment::Rigid {
             n_rigid += 1;
             part.vertices.iter().for_each(|&v| regions.rigid[v] = true);
         } else {
@@ -126,7 +181,7 @@ pub(super) fn add_inner_pieces(pair: &Pair, regions: &mut Regions) -> Vec<String
     }
     vec![format!(
         "inner parts of the source ({:.1} % of its area) attract nothing: {n_free} carried along, {n_rigid} as rigid \
-         bodies (--free and --rigid name others, --no-hidden turns this off)",
+         bodies",
         100.0 * share
     )]
 }

@@ -5,23 +5,30 @@ mod named;
 
 use std::fs;
 use std::path::Path;
+use std::sync::OnceLock;
 
 use anyhow::{anyhow, ensure, Context as _};
+use drape_studio::Parts;
 use mesh_core::{TriangleBvh, VertexData, VertexId};
 use neural_drape::Regions;
 
 use crate::input::{Pair, Source};
+use hidden::Hidden;
 
 /// Which parts of the source are not draped like the rest.
 #[derive(Clone, Debug, Default, clap::Args)]
 pub(crate) struct RegionArgs {
     /// Part that attracts nothing and is carried along smoothly, as the lining of a mouth: the name of a group, object or
-    /// material, property:NAME of a PLY file, a file of vertex numbers, or "hidden"; may be repeated
+    /// material, property:NAME of a PLY file, a file of vertex numbers, or "hidden", "hidden:1" and so on
+    /// for inner surfaces; may be repeated
     #[arg(long, value_name = "PART")]
     free: Vec<String>,
     /// Part whose pieces move as one body each, as eyeballs and teeth; named like --free; may be repeated
     #[arg(long, value_name = "PART")]
     rigid: Vec<String>,
+    /// Inner part that is draped like the rest, although nobody sees it; named like --free; may be repeated
+    #[arg(long, value_name = "PART")]
+    draped: Vec<String>,
     /// How strongly each vertex is attracted, from 0 to 1: a file of lines "vertex weight", or property:NAME of a PLY file
     #[arg(long, value_name = "FILE")]
     weights: Option<String>,
@@ -38,16 +45,30 @@ pub(crate) struct Chosen {
 
 impl RegionArgs {
     /// As if these names had been given.
-    pub(crate) fn named(free: &[String], rigid: &[String]) -> Self {
+    pub(crate) fn named(parts: &Parts) -> Self {
         Self {
-            free: free.to_vec(),
-            rigid: rigid.to_vec(),
+            free: parts.free.clone(),
+            rigid: parts.rigid.clone(),
+            draped: parts.draped.clone(),
             ..Self::default()
         }
     }
 
-    /// Looks the parts up. Without any name, inner pieces are found.
+    /// Looks the parts up. Inner pieces that no one names are found.
     pub(crate) fn resolve(&self, pair: &Pair) -> anyhow::Result<Chosen> {
+        let mut chosen = self.resolve_knowing(pair, &OnceLock::new())?;
+        for note in &mut chosen.notes {
+            *note += " (--free, --rigid and --draped decide otherwise, --no-hidden turns this off)";
+        }
+        Ok(chosen)
+    }
+
+    /// As [`Self::resolve`], with the inner surfaces of the pair where they are known already.
+    pub(crate) fn resolve_knowing(
+        &self,
+        pair: &Pair,
+        hidden: &OnceLock<Hidden>,
+    ) -> anyhow::Result<Chosen> {
         let n = pair.source.mesh.n_vertices();
         let mut regions = Regions::none(n);
         if let Some(spec) = &self.weights {
@@ -55,15 +76,24 @@ impl RegionArgs {
                 weights(spec, pair).with_context(|| format!("--weights {spec}"))?;
         }
         for spec in &self.free {
-            let part = named::find(spec, pair).with_context(|| format!("--free {spec}"))?;
+            let part = named::find(spec, pair, hidden).with_context(|| format!("--free {spec}"))?;
             for v in part.ids().filter(|&v| part[v]) {
                 regions.attraction[v] = 0.0;
             }
         }
         for spec in &self.rigid {
-            let part = named::find(spec, pair).with_context(|| format!("--rigid {spec}"))?;
+            let part =
+                named::find(spec, pair, hidden).with_context(|| format!("--rigid {spec}"))?;
             for v in part.ids().filter(|&v| part[v]) {
                 regions.rigid[v] = true;
+            }
+        }
+        let mut is_draped = VertexData::new(n, false);
+        for spec in &self.draped {
+            let part =
+                named::find(spec, pair, hidden).with_context(|| format!("--draped {spec}"))?;
+            for v in part.ids().filter(|&v| part[v]) {
+                is_draped[v] = true;
             }
         }
         let is_all_free = regions.attraction.iter().all(|&a| a == 0.0);
@@ -74,7 +104,8 @@ impl RegionArgs {
         let notes = if self.no_hidden {
             Vec::new()
         } else {
-            hidden::add_inner_pieces(pair, &mut regions)
+            let hidden = hidden.get_or_init(|| Hidden::of(pair));
+            hidden::add_inner_pieces(hidden, &is_draped, &mut regions)
         };
         Ok(Chosen { regions, notes })
     }

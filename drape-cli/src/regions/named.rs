@@ -2,21 +2,30 @@
 
 use std::fs;
 use std::path::Path;
+use std::sync::OnceLock;
 
 use anyhow::{bail, ensure, Context as _};
 use mesh_core::{FaceData, FaceId, VertexData, VertexId};
 
-use super::{hidden, numbered_lines};
+use super::hidden::{Hidden, Inner};
+use super::numbered_lines;
 use crate::input::{Pair, Source};
 
-/// What selects the vertices of inner surfaces.
-const HIDDEN: &str = "hidden";
+/// What selects the vertices of inner surfaces: all of them, or with `:K` the K-th.
+pub(super) const HIDDEN: &str = "hidden";
 
 /// The vertices of a part.
-pub(super) fn find(spec: &str, pair: &Pair) -> anyhow::Result<VertexData<bool>> {
+pub(super) fn find(
+    spec: &str,
+    pair: &Pair,
+    hidden: &OnceLock<Hidden>,
+) -> anyhow::Result<VertexData<bool>> {
     let n = pair.source.mesh.n_vertices();
+    let inner = || &hidden.get_or_init(|| Hidden::of(pair)).inner;
     let part = if spec == HIDDEN {
-        hidden::vertices(&pair.source)
+        all(n, inner().iter().flat_map(|i| &i.vertices))
+    } else if let Some(number) = spec.strip_prefix("hidden:") {
+        all(n, &nth(number, inner())?.vertices)
     } else if let Some(name) = spec.strip_prefix("property:") {
         property(name, pair)?.into_iter().map(|x| x > 0.5).collect()
     } else if let Some(part) = of_faces(spec, pair) {
@@ -41,6 +50,23 @@ pub(super) fn find(spec: &str, pair: &Pair) -> anyhow::Result<VertexData<bool>> 
         "selects no vertex of the source"
     );
     Ok(part)
+}
+
+fn all<'a>(n: usize, vertices: impl IntoIterator<Item = &'a VertexId>) -> VertexData<bool> {
+    let mut part = VertexData::new(n, false);
+    vertices.into_iter().for_each(|&v| part[v] = true);
+    part
+}
+
+/// An inner surface by its number, counted from 1.
+fn nth<'a>(number: &str, inner: &'a [Inner]) -> anyhow::Result<&'a Inner> {
+    let row = number.parse::<usize>().ok().and_then(|k| k.checked_sub(1));
+    row.and_then(|row| inner.get(row)).with_context(|| {
+        format!(
+            "there is no inner surface '{number}': the source has {}, counted from 1 (drape inspect --hidden)",
+            inner.len()
+        )
+    })
 }
 
 /// The vertices all of whose faces have the name: those it shares with other parts belong to the others.

@@ -5,7 +5,7 @@ use mesh_core::{Landmark, Point3};
 use serde_json::{json, Value};
 use toml::Table;
 
-use super::{Desk, Request, Side, Treatment};
+use super::{Desk, Request, Side};
 use crate::pick::{first_hit, Ray};
 use crate::scene::mirrored;
 use crate::session::{Mark, MarkKind, SourcePlace, MAX_MARKS};
@@ -30,7 +30,7 @@ impl Desk {
                 let place = self.pick(*side, ray);
                 return Ok(self.describe(place));
             }
-            Request::Curves => return Ok(self.hub.curves()),
+            Request::Curves => return Ok(json!(self.hub.curves())),
             Request::PartFaces { name } => return Ok(self.part_faces(name)),
             Request::Place { side, ray } => {
                 self.finish_drag();
@@ -41,6 +41,7 @@ impl Desk {
             | Request::Resume
             | Request::Step
             | Request::Stop
+            | Request::Extend
             | Request::Reset => {
                 self.finish_drag();
                 self.command(&request)?;
@@ -110,33 +111,6 @@ impl Desk {
         }
         self.ask_preview();
         self.changed();
-    }
-
-    /// Treats a part in its own way, if that leaves something to drape.
-    fn treat(&mut self, name: &str, treatment: Treatment) -> Result<()> {
-        let mut parts = self.session.document.parts.clone();
-        for list in [&mut parts.free, &mut parts.rigid] {
-            list.retain(|known| known != name);
-        }
-        match treatment {
-            Treatment::Draped => {}
-            Treatment::Free => parts.free.push(name.to_owned()),
-            Treatment::Rigid => parts.rigid.push(name.to_owned()),
-        }
-        let scene = self.scene().context("open a source and a target first")?;
-        let known = scene.source.parts();
-        ensure!(
-            known.iter().any(|part| part.name == name),
-            "the source has no part of this name"
-        );
-        self.toolbox.regions(&scene, &parts)?;
-        self.session.edit(|d| d.parts = parts);
-        Ok(())
-    }
-
-    fn part_faces(&self, name: &str) -> Value {
-        let source = self.source.as_ref();
-        json!(source.map(|source| source.part_triangles(name)))
     }
 
     fn set_settings(&mut self, toml: &str) -> Result<()> {

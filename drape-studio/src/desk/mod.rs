@@ -1,11 +1,11 @@
 //! The one place that changes the session: requests and news come in, the newest state goes out.
 
 mod edits;
+mod parts;
 mod request;
 mod runs;
 mod state;
 
-use request::Treatment;
 pub(crate) use request::{Request, Side};
 
 use std::path::PathBuf;
@@ -15,18 +15,18 @@ use std::sync::Arc;
 use std::thread;
 use std::time::{Duration, Instant};
 
-use mesh_core::{Landmark, Positions, TriangleBvh};
+use mesh_core::{Landmark, TriangleBvh};
 use serde_json::Value;
 use tokio::sync::oneshot;
 
 use crate::checkpoint;
 use crate::figures::{judge, FiguresJob};
-use crate::hub::{FrameKind, Hub};
+use crate::hub::{Frame, FrameKind, Hub, Made};
 use crate::latest::Latest;
 use crate::preview::{preview, rough_preview, PreviewJob, Shown};
 use crate::runner::{News, Runner};
 use crate::session::{Document, InputRecord, RunLog, Session};
-use crate::{Scene, Settings, Source, Target, Toolbox};
+use crate::{InnerPart, Scene, Settings, Source, Target, Toolbox};
 
 /// Edits are on disk after this long.
 const SAVE_DELAY: Duration = Duration::from_millis(400);
@@ -40,6 +40,8 @@ pub(crate) enum Inbox {
     News(u32, News),
     /// From the preview of this number.
     Previewed(u32, Result<Vec<String>, String>),
+    /// The inner parts of a source.
+    Inner(Arc<Source>, Vec<InnerPart>),
 }
 
 /// A file that was opened.
@@ -54,8 +56,8 @@ pub(crate) struct Snapshot {
     pub(crate) session: Session,
     pub(crate) source: Option<Arc<Source>>,
     pub(crate) target: Option<Arc<Target>>,
-    /// The shape that is shown.
-    pub(crate) shown: Option<Arc<Positions>>,
+    /// The shape that is shown; where there is a drape, that, with how it came about.
+    pub(crate) shown: Option<Arc<Frame>>,
 }
 
 /// Where the drape stands.
@@ -82,6 +84,8 @@ struct ActiveRun {
     runner: Runner,
     status: Status,
     log: RunLog,
+    /// How many iterations it gets when it is to go on longer.
+    n_more: usize,
 }
 
 /// How to reach the desk.
@@ -127,6 +131,8 @@ pub(crate) struct Desk {
     warnings: Vec<String>,
     preview_error: Option<String>,
     notice: Option<String>,
+    /// Parts of the source that no ray from outside reaches.
+    inner: Vec<InnerPart>,
     /// The document before the drag that goes on.
     dragged_from: Option<Document>,
     /// The shape shown under this number, to pick on.
@@ -164,6 +170,7 @@ impl Desk {
             warnings: Vec::new(),
             preview_error: None,
             notice: parts.notice,
+            inner: Vec::new(),
             dragged_from: None,
             shown_bvh: None,
             revision: 0,
@@ -171,6 +178,7 @@ impl Desk {
         };
         desk.hub.set_scene(desk.scene());
         desk.take_up_run();
+        desk.look_inside();
         desk.ask_preview();
         desk.publish();
         thread::spawn(move || desk.work(&messages));
@@ -217,6 +225,7 @@ impl Desk {
                 self.publish();
             }
             Inbox::Previewed(..) => {}
+            Inbox::Inner(of, inner) => self.found_inside(&of, inner),
         }
     }
 
@@ -253,7 +262,7 @@ impl Desk {
             return;
         };
         self.n_previews = self.n_previews.wrapping_add(1);
-        let is_pending = self.is_pending();
+        let is_pending = self.are_marks_pending();
         let shown = match &self.run {
             None => Shown::Initial,
             Some(run) if run.status.is_busy() || !is_pending => Shown::Nothing,
@@ -287,7 +296,7 @@ impl Desk {
                 scene,
                 positions: Arc::clone(&frame.positions),
                 landmarks: self.landmarks(),
-                iteration: Some(frame.iteration),
+                iteration: Some(frame.iteration()),
                 is_resting: true,
             });
         }
@@ -300,11 +309,9 @@ impl Desk {
     fn snapshot(&self) -> Snapshot {
         let mut session = self.session.clone();
         let shown = self.hub.draped().filter(|_| self.run.is_some());
-        if let (Some(log), Some(frame)) = (&mut session.run, &shown) {
+        if let Some(Made { log, .. }) = shown.as_ref().and_then(|frame| frame.made.as_ref()) {
             // A drape that goes on is taken as it was when it was last shown.
-            log.iteration = frame.iteration;
-            log.events
-                .retain(|event| event.iteration <= frame.iteration);
+            session.run = Some(log.clone());
         }
         let preview = self.hub.frame.borrow().clone();
         let preview = preview.filter(|frame| frame.kind == FrameKind::Initial);
@@ -312,7 +319,7 @@ impl Desk {
             session,
             source: self.source.clone(),
             target: self.target.clone(),
-            shown: shown.or(preview).map(|frame| Arc::clone(&frame.positions)),
+            shown: shown.or(preview),
         }
     }
 
@@ -338,8 +345,10 @@ impl Desk {
         self.dragged_from = None;
         self.shown_bvh = None;
         self.warnings.clear();
+        self.inner.clear();
         self.notice = None;
         self.hub.set_scene(self.scene());
+        self.look_inside();
         self.ask_preview();
         self.changed();
         Ok(())

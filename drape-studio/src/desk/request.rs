@@ -4,6 +4,7 @@ use serde::Deserialize;
 
 use crate::pick::Ray;
 use crate::session::MarkKind;
+use crate::Treatment;
 
 /// Which shape a ray is aimed at.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
@@ -13,15 +14,6 @@ pub(crate) enum Side {
     Target,
     /// The source where it is shown now: a place on it is a place of the source.
     Result,
-}
-
-/// How a part is draped.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub(crate) enum Treatment {
-    Draped,
-    Free,
-    Rigid,
 }
 
 /// One request.
@@ -61,7 +53,7 @@ pub(crate) enum Request {
     Mirror {
         axes: Option<[usize; 2]>,
     },
-    /// How a part of the source is treated by the next drape.
+    /// How a part of the source is treated.
     Part {
         name: String,
         treatment: Treatment,
@@ -88,6 +80,8 @@ pub(crate) enum Request {
     Step,
     /// Ends the drape where it is and keeps the result.
     Stop,
+    /// Gives the drape more iterations, and goes on where it was over.
+    Extend,
     /// Throws the drape away.
     Reset,
     /// The curves of the run so far.

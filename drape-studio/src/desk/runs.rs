@@ -5,7 +5,8 @@ use std::sync::Arc;
 use anyhow::{bail, Context as _, Result};
 
 use super::{ActiveRun, Desk, Inbox, Request, Status};
-use crate::checkpoint;
+use crate::checkpoint::{self, Checkpoint};
+use crate::course::more_iterations;
 use crate::runner::{News, Order, Runner, RunnerParts};
 use crate::session::{landmarks, Mark, RunLog};
 
@@ -14,6 +15,7 @@ impl Desk {
     pub(super) fn command(&mut self, request: &Request) -> Result<()> {
         match request {
             Request::Drape => self.begin()?,
+            Request::Extend => self.extend()?,
             Request::Reset => {
                 self.leave_run();
                 self.hub.forget_drape();
@@ -62,6 +64,7 @@ impl Desk {
 
     fn start_runner(&mut self, log: RunLog, state: Option<neural_drape::DrapeState>) -> Result<()> {
         let scene = self.scene().context("open a source and a target first")?;
+        let n_more = more_iterations(&self.toolbox.settings(&log.settings)?.config);
         self.n_runs += 1;
         let (number, inbox) = (self.n_runs, self.inbox.clone());
         let parts = RunnerParts {
@@ -81,6 +84,7 @@ impl Desk {
             }),
             status: Status::Starting,
             log,
+            n_more,
         });
         Ok(())
     }
@@ -94,10 +98,34 @@ impl Desk {
     /// Goes on, with the landmarks as they are.
     fn resume(&mut self, order: Order) -> Result<()> {
         self.finish_drag();
-        if self.is_pending() {
-            self.order(Order::Landmarks(self.complete_marks()))?;
-        }
+        self.order_pending()?;
         self.order(order)
+    }
+
+    /// Gives the drape more iterations; one that is over goes on.
+    fn extend(&mut self) -> Result<()> {
+        self.finish_drag();
+        let run = self.run.as_ref().context("there is no drape")?;
+        let is_over = matches!(run.status, Status::Finished | Status::Stopped);
+        if is_over {
+            self.order_pending()?;
+        }
+        self.order(Order::Extend)?;
+        if is_over {
+            self.order(Order::Go)?;
+        }
+        Ok(())
+    }
+
+    /// Hands the drape what it has not seen yet.
+    fn order_pending(&mut self) -> Result<()> {
+        if self.are_marks_pending() {
+            self.order(Order::Marks(self.complete_marks()))?;
+        }
+        if self.are_parts_pending() {
+            self.order(Order::Parts(self.session.document.parts.clone()))?;
+        }
+        Ok(())
     }
 
     /// Ends the drape and forgets it.
@@ -117,7 +145,10 @@ impl Desk {
         }
         let path = self.checkpoint_path();
         let (log, state) = match checkpoint::read(&path) {
-            Ok((log, state)) => (Some(log), Some(state)),
+            Ok(Checkpoint { story, state }) => {
+                self.hub.set_curves(story.curves);
+                (Some(story.log), Some(state))
+            }
             // A session that came without its drape: it is done again.
             Err(_) => (self.session.run.clone(), None),
         };
@@ -156,14 +187,22 @@ impl Desk {
             .run
             .as_ref()
             .is_some_and(|run| run.status == Status::Running);
-        if is_running && self.is_pending() {
+        if is_running {
             // Never fails: there is a run.
-            drop(self.order(Order::Landmarks(self.complete_marks())));
+            drop(self.order_pending());
         }
     }
 
+    /// Whether the drape has not seen the parts as they are treated now.
+    pub(super) fn are_parts_pending(&self) -> bool {
+        let parts = &self.session.document.parts;
+        self.run
+            .as_ref()
+            .is_some_and(|run| run.log.last_parts() != parts)
+    }
+
     /// Whether the drape has not seen the landmarks as they are.
-    pub(super) fn is_pending(&self) -> bool {
+    pub(super) fn are_marks_pending(&self) -> bool {
         let Some(run) = &self.run else {
             return false;
         };

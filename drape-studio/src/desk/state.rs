@@ -22,6 +22,7 @@ impl Desk {
             "notice": self.notice,
             "mirror": document.mirror,
             "parts": document.parts,
+            "inner": self.inner_state(),
             "settings": {
                 "preset": self.settings.preset,
                 "seed": self.settings.config.seed,
@@ -98,8 +99,11 @@ impl Desk {
             "status": status,
             "error": error,
             "iteration": run.log.iteration,
-            "pending": self.is_pending(),
+            "pending": self.are_marks_pending() || self.are_parts_pending(),
+            "pending_landmarks": self.are_marks_pending(),
+            "pending_parts": self.are_parts_pending(),
             "number": run.number,
+            "n_more": run.n_more,
         })
     }
 }

@@ -10,7 +10,7 @@ const SCRIPT: &str = "text/javascript; charset=utf-8";
 const SVG: &str = "image/svg+xml";
 
 /// Name, type and text of every file.
-const FILES: [(&str, &str, &str); 13] = [
+const FILES: [(&str, &str, &str); 20] = [
     ("index.html", HTML, include_str!("../../assets/index.html")),
     ("style.css", CSS, include_str!("../../assets/style.css")),
     ("icon.svg", SVG, include_str!("../../assets/icon.svg")),
@@ -26,6 +26,25 @@ const FILES: [(&str, &str, &str); 13] = [
     ),
     ("views.js", SCRIPT, include_str!("../../assets/views.js")),
     ("panels.js", SCRIPT, include_str!("../../assets/panels.js")),
+    (
+        "cameras.js",
+        SCRIPT,
+        include_str!("../../assets/cameras.js"),
+    ),
+    (
+        "commands.js",
+        SCRIPT,
+        include_str!("../../assets/commands.js"),
+    ),
+    (
+        "painter.js",
+        SCRIPT,
+        include_str!("../../assets/painter.js"),
+    ),
+    ("parts.js", SCRIPT, include_str!("../../assets/parts.js")),
+    ("probes.js", SCRIPT, include_str!("../../assets/probes.js")),
+    ("stage.js", SCRIPT, include_str!("../../assets/stage.js")),
+    ("words.js", SCRIPT, include_str!("../../assets/words.js")),
     ("chart.js", SCRIPT, include_str!("../../assets/chart.js")),
     ("keys.js", SCRIPT, include_str!("../../assets/keys.js")),
 ];

@@ -6,13 +6,14 @@ use anyhow::{bail, Context as _, Result};
 use axum::extract::{Path, State};
 use axum::http::{header, StatusCode};
 use axum::response::{IntoResponse, Response};
-use neural_drape::{Warp, WarpInput};
 use tokio::sync::oneshot;
 use tokio::task::spawn_blocking;
 
 use super::App;
 use crate::course::Start;
 use crate::desk::{Inbox, Snapshot};
+use crate::hub::Frame;
+use crate::replay::Replayed;
 use crate::session::{landmarks, RunLog};
 use crate::toolbox::Finished;
 use crate::{landmark_file, Scene};
@@ -106,7 +107,7 @@ fn make(app: &App, what: &str, snapshot: Snapshot) -> Result<Download> {
 struct Work {
     scene: Scene,
     session: crate::session::Session,
-    shown: Option<Arc<mesh_core::Positions>>,
+    shown: Option<Arc<Frame>>,
 }
 
 impl Work {
@@ -122,17 +123,31 @@ impl Work {
         })
     }
 
-    fn shown(&self) -> Result<&mesh_core::Positions> {
+    fn shown(&self) -> Result<&Frame> {
         self.shown
             .as_deref()
             .context("there is no result yet; drape first")
+    }
+
+    /// The shape that is shown and how it came about.
+    fn replayed(&self, app: &App) -> Result<Replayed> {
+        let (log, shown) = (self.log(), self.shown()?);
+        let start = Start::new(&self.scene, app.toolbox.as_ref(), &log)?;
+        Ok(Replayed {
+            landmarks: landmarks(log.last_landmarks()),
+            settings: start.settings,
+            initial: start.initial,
+            draped: shown.positions.as_ref().clone(),
+            network: shown.made.as_ref().and_then(|made| made.network.clone()),
+            scene: self.scene.clone(),
+        })
     }
 
     /// The source file with its vertices where they are shown.
     fn result(&self) -> Result<Download> {
         let file = &self.scene.source.file;
         let name = file.path().file_name().unwrap_or_default();
-        let positions = self.scene.source.spread(self.shown()?);
+        let positions = self.scene.source.spread(&self.shown()?.positions);
         let bytes = file.to_bytes(file.path(), &positions)?;
         Ok(Download {
             name: format!("draped-{}", name.to_string_lossy()),
@@ -153,27 +168,17 @@ impl Work {
     }
 
     fn warp(&self, app: &App) -> Result<Vec<u8>> {
-        let start = Start::new(&self.scene, app.toolbox.as_ref(), &self.log())?;
-        let source = &self.scene.source;
-        let warp = Warp::new(WarpInput {
-            triangulation: &source.triangulation,
-            rest: &source.rest,
-            initial: &start.initial,
-            draped: self.shown()?,
-            network: None,
-        })?;
-        Ok(warp.to_bytes())
+        Ok(self.replayed(app)?.warp()?.to_bytes())
     }
 
     fn report(&self, app: &App) -> Result<Vec<u8>> {
-        let log = self.log();
-        let start = Start::new(&self.scene, app.toolbox.as_ref(), &log)?;
+        let made = self.replayed(app)?;
         let page = app.toolbox.report(Finished {
-            scene: &self.scene,
-            landmarks: &landmarks(log.last_landmarks()),
-            settings: &start.settings,
-            initial: &start.initial,
-            draped: self.shown()?,
+            scene: &made.scene,
+            landmarks: &made.landmarks,
+            settings: &made.settings,
+            initial: &made.initial,
+            draped: &made.draped,
         })?;
         Ok(page.into_bytes())
     }

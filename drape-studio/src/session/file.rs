@@ -75,13 +75,8 @@ impl Session {
     /// Numbers that no studio would have written are refused.
     fn check(&self) -> anyhow::Result<()> {
         let documents = self.undo.iter().chain(&self.redo).chain([&self.document]);
-        let runs = self.run.iter().flat_map(|run| {
-            let changed = run.events.iter().filter_map(|event| match &event.change {
-                super::Change::Landmarks(marks) => Some(marks),
-                super::Change::Rebuilt => None,
-            });
-            changed.chain([&run.landmarks])
-        });
+        let runs = self.run.iter();
+        let runs = runs.flat_map(|run| run.changed_landmarks().chain([&run.landmarks]));
         let mirrors = documents.clone().filter_map(|d| d.mirror).flatten();
         ensure!(
             mirrors.into_iter().all(|axis| axis < 3),
@@ -109,13 +104,8 @@ impl Session {
 
     /// The largest row of the source that any place names.
     pub(crate) fn check_places(&self, n_vertices: usize) -> anyhow::Result<()> {
-        let runs = self.run.iter().flat_map(|run| {
-            let changed = run.events.iter().filter_map(|event| match &event.change {
-                super::Change::Landmarks(marks) => Some(marks),
-                super::Change::Rebuilt => None,
-            });
-            changed.chain([&run.landmarks])
-        });
+        let runs = self.run.iter();
+        let runs = runs.flat_map(|run| run.changed_landmarks().chain([&run.landmarks]));
         let documents = self.undo.iter().chain(&self.redo).chain([&self.document]);
         let places = documents
             .map(|d| &d.marks)
@@ -140,8 +130,9 @@ fn is_finite(mark: &Mark) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Event, MarkKind, RunLog, SourcePlace};
+    use super::super::{Change, Event, MarkKind, RunLog, SourcePlace};
     use super::*;
+    use crate::Parts;
 
     fn session() -> Session {
         let mut session = Session::new("preset = \"standard\"\n".to_owned());
@@ -155,19 +146,35 @@ mod tests {
             target: Some([f64::MIN_POSITIVE, -0.0, 1e300]),
             kind: MarkKind::Rigid,
         };
-        session.edit(|d| d.marks.push(mark.clone()));
+        let parts = Parts {
+            free: vec!["bag".to_owned()],
+            rigid: Vec::new(),
+            draped: vec!["hidden:2".to_owned()],
+        };
+        session.edit(|d| {
+            d.marks.push(mark.clone());
+            d.parts = parts.clone();
+        });
         session.run = Some(RunLog {
             settings: session.document.settings.clone(),
-            parts: crate::Parts::default(),
+            parts: Parts::default(),
             landmarks: Vec::new(),
             events: vec![
                 Event {
                     iteration: 3,
-                    change: super::super::Change::Landmarks(vec![mark]),
+                    change: Change::Landmarks(vec![mark]),
                 },
                 Event {
                     iteration: 4,
-                    change: super::super::Change::Rebuilt,
+                    change: Change::Rebuilt,
+                },
+                Event {
+                    iteration: 4,
+                    change: Change::Parts(parts.clone()),
+                },
+                Event {
+                    iteration: 5,
+                    change: Change::Extended(500),
                 },
             ],
             iteration: 5,
@@ -180,10 +187,9 @@ mod tests {
         let before = session();
         let after = Session::of_json(&before.to_json().unwrap()).unwrap();
         assert_eq!(after, before);
-        assert_eq!(
-            after.run.unwrap().last_landmarks(),
-            before.document.marks.as_slice()
-        );
+        let run = after.run.unwrap();
+        assert_eq!(run.last_landmarks(), before.document.marks.as_slice());
+        assert_eq!(run.last_parts(), &before.document.parts);
     }
 
     #[test]

@@ -11,7 +11,7 @@ use crate::Parts;
 pub(crate) struct RunLog {
     /// The settings that it started with, as TOML.
     pub(crate) settings: String,
-    /// Parts of the source that are treated in their own way.
+    /// The parts of the source that it started to treat in their own way.
     #[serde(default)]
     pub(crate) parts: Parts,
     /// The landmarks that it started with.
@@ -37,6 +37,10 @@ pub(crate) struct Event {
 pub(crate) enum Change {
     /// These landmarks hold from here on.
     Landmarks(Vec<Mark>),
+    /// Parts of the source are treated in these ways from here on.
+    Parts(Parts),
+    /// The run got this many iterations more.
+    Extended(usize),
     /// The drape was put together again from its saved state.
     Rebuilt,
 }
@@ -44,11 +48,25 @@ pub(crate) enum Change {
 impl RunLog {
     /// The landmarks that hold at the end.
     pub(crate) fn last_landmarks(&self) -> &[Mark] {
-        let changes = self.events.iter().rev();
-        let last = changes.into_iter().find_map(|event| match &event.change {
-            Change::Landmarks(marks) => Some(marks),
-            Change::Rebuilt => None,
-        });
+        let last = self.changed_landmarks().last();
         last.unwrap_or(&self.landmarks)
+    }
+
+    /// The landmarks of every change, in order.
+    pub(super) fn changed_landmarks(&self) -> impl Iterator<Item = &Vec<Mark>> {
+        self.events.iter().filter_map(|event| match &event.change {
+            Change::Landmarks(marks) => Some(marks),
+            _ => None,
+        })
+    }
+
+    /// The ways of treating parts that hold at the end.
+    pub(crate) fn last_parts(&self) -> &Parts {
+        let mut changes = self.events.iter().rev();
+        let last = changes.find_map(|event| match &event.change {
+            Change::Parts(parts) => Some(parts),
+            _ => None,
+        });
+        last.unwrap_or(&self.parts)
     }
 }

@@ -276,6 +276,33 @@ impl Page {
         self.call("DOM.setFileInputFiles", files);
     }
 
+    /// Drops a file from the desktop at a place.
+    pub(crate) fn drop_file(&self, [x, y]: [f64; 2], file: &Path) {
+        let data = json!({ "items": [], "files": [file], "dragOperationsMask": 1 });
+        for kind in ["dragEnter", "dragOver", "drop"] {
+            let event = json!({ "type": kind, "x": x, "y": y, "data": data });
+            self.call("Input.dispatchDragEvent", event);
+        }
+    }
+
+    /// Fingers at some places.
+    pub(crate) fn touch(&self, kind: &str, at: &[[f64; 2]]) {
+        let points: Vec<Value> = at
+            .iter()
+            .enumerate()
+            .map(|(id, [x, y])| json!({ "x": x, "y": y, "id": id }))
+            .collect();
+        self.call(
+            "Input.dispatchTouchEvent",
+            json!({ "type": kind, "touchPoints": points }),
+        );
+    }
+
+    /// Where downloads go.
+    pub(crate) fn downloads(&self) -> PathBuf {
+        self.browser.downloads()
+    }
+
     /// A picture of the page as PNG.
     pub(crate) fn picture(&self) -> Vec<u8> {
         self.settle();

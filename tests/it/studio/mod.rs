@@ -2,6 +2,8 @@
 
 mod big;
 mod browser;
+mod going_on;
+mod inputs;
 mod page;
 mod pictures;
 mod restart;

@@ -23,13 +23,22 @@ pub(crate) type Place = [f64; 3];
 pub(crate) fn find(page: &Page, side: &str, place: Place) -> [f64; 2] {
     for [yaw, pitch] in LOOKS {
         page.value(&format!(
-            "studio.views.list.forEach((v) => v.camera.look({yaw}, {pitch})), studio.frameAll(), true"
+            "studio.views.list.forEach((v) => v.camera.look({yaw}, {pitch})), studio.cameras.frameAll(), true"
         ));
         if let Some(at) = seen(page, side, place) {
+            probed(page);
             return at;
         }
     }
     panic!("{place:?} is hidden on the {side}");
+}
+
+/// Waits until the page knows which markers are hidden.
+pub(crate) fn probed(page: &Page) {
+    page.settle();
+    page.wait(
+        "studio.views.list.every((v) => !v.isStale && !v.isUnprobed && v.probes.asked.size === 0)",
+    );
 }
 
 /// Where a place is seen now; none where something is before it.

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use super::browser::{browser, Page};
+use super::page::probed;
 use super::server::{horse_wolf, Server};
 
 #[test]
@@ -72,16 +73,16 @@ fn every_state_can_be_drawn() {
 
 /// Heat maps, the target over the result, light and dark, a small and a large page.
 fn colours(page: &Page, save: &dyn Fn(&Page, &str)) {
-    page.value("studio.setHeat('distance')");
+    page.value("studio.stage.setHeat('distance')");
     page.wait("studio.views.result.shape.values");
     page.prefer("dark");
     save(page, "distance-dark");
-    page.value("studio.setHeat('stretch')");
+    page.value("studio.stage.setHeat('stretch')");
     page.wait("studio.views.result.shape.perTriangle");
     page.prefer("light");
     save(page, "stretch");
-    page.value("studio.setHeat('')");
-    page.value("document.getElementById('opacity').value = 0.5; studio.invalidate(); 1");
+    page.value("studio.stage.setHeat('')");
+    page.value("document.getElementById('opacity').value = 0.5; studio.painter.invalidate(); 1");
     page.size([3840, 2160], 1.0);
     save(page, "overlay-uhd");
     page.size([1280, 800], 1.0);
@@ -89,6 +90,7 @@ fn colours(page: &Page, save: &dyn Fn(&Page, &str)) {
 
 /// Moves the first landmark of the target to where it does not belong.
 fn drag_away(page: &Page) {
+    probed(page);
     let at = page.value(
         "(() => { const p = studio.state.landmarks[2].target.point; const at = studio.onPage('target', p); \
          return [Math.round(at.x), Math.round(at.y)]; })()",

@@ -7,25 +7,22 @@ use serde_json::json;
 
 use super::browser::{browser, Page};
 use super::server::Server;
-use super::wire::Wire;
+use super::wire::{download, Wire};
 use crate::support::Workplace;
 
-/// Long enough to be killed in the middle.
-const LONG: &str = "[[stages]]\nn_iterations = 100000\n";
+/// A small marked pair, and settings that take long enough to be killed in the middle.
+fn long() -> (Workplace, Server) {
+    let place = Workplace::new();
+    place.write("long.toml", "[[stages]]\nn_iterations = 100000\n");
+    let arguments = "source.obj target.ply --landmarks landmarks.json --config long.toml";
+    let arguments: Vec<&str> = arguments.split(' ').collect();
+    let server = Server::start(&place.path(""), &arguments);
+    (place, server)
+}
 
 #[test]
 fn a_killed_studio_loses_at_most_two_seconds() {
-    let place = Workplace::new();
-    place.write("long.toml", LONG);
-    let arguments = [
-        "source.obj",
-        "target.ply",
-        "--landmarks",
-        "landmarks.json",
-        "--config",
-        "long.toml",
-    ];
-    let server = Server::start(&place.path(""), &arguments);
+    let (place, server) = long();
     let mut wire = Wire::own(&server);
     wire.ask(json!({ "do": "drape" }));
     let progress = |wire: &mut Wire| loop {
@@ -59,6 +56,14 @@ fn a_killed_studio_loses_at_most_two_seconds() {
         "back at {iteration}; two seconds before the end it was at {least}"
     );
     assert_eq!(state["landmarks"].as_array().map(Vec::len), Some(6));
+    // The curves are there from the start on.
+    let curves = wire.ask(json!({ "do": "curves" }));
+    let curves = curves["value"].as_array().expect("curves");
+    let loss = curves.iter().find(|c| c["name"] == "loss");
+    let points = &loss.expect("a curve of the loss")["points"];
+    assert_eq!(points[0][0], json!(0));
+    let last = points.as_array().and_then(|p| p.last()).expect("points");
+    assert_eq!(last[0], json!(iteration - 1));
 
     // It goes on, and what comes out can still be done again to the bit.
     wire.ask(json!({ "do": "step" }));
@@ -67,34 +72,13 @@ fn a_killed_studio_loses_at_most_two_seconds() {
     let exported = download(&server, "result");
     fs::write(place.path("exported.json"), download(&server, "session")).unwrap();
     place.drape("replay exported.json -o replayed.obj").well();
-    assert!(place.read("replayed.obj") == exported);
-}
-
-fn download(server: &Server, what: &str) -> String {
-    let request = format!(
-        "GET {}export/{what} HTTP/1.0\r\nHost: {}\r\n\r\n",
-        server.path(),
-        server.host()
-    );
-    let answer = super::wire::raw(server, &request);
-    assert!(answer.starts_with("HTTP/1.0 200"), "{answer:.300}");
-    answer.split_once("\r\n\r\n").expect("a body").1.to_owned()
+    assert!(place.read("replayed.obj").as_bytes() == exported);
 }
 
 #[test]
 fn a_page_that_is_loaded_again_comes_back_to_the_running_drape() {
     let Some(browser) = browser() else { return };
-    let place = Workplace::new();
-    place.write("long.toml", LONG);
-    let arguments = [
-        "source.obj",
-        "target.ply",
-        "--landmarks",
-        "landmarks.json",
-        "--config",
-        "long.toml",
-    ];
-    let server = Server::start(&place.path(""), &arguments);
+    let (_place, server) = long();
     let page = Page::open(&browser, &server.url, [1280, 800]);
     page.wait("studio.views.result.shape");
     page.press("#drape");

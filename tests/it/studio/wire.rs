@@ -97,8 +97,24 @@ impl Wire {
     }
 }
 
+/// What the export menu gives.
+pub(crate) fn download(server: &Server, what: &str) -> Vec<u8> {
+    let (path, host) = (server.path(), server.host());
+    let request = format!("GET {path}export/{what} HTTP/1.0\r\nHost: {host}\r\n\r\n");
+    let answer = raw_bytes(server, &request);
+    let head = answer.windows(4).position(|w| w == b"\r\n\r\n");
+    let (head, body) = answer.split_at(head.expect("a head") + 4);
+    let head = String::from_utf8_lossy(head);
+    assert!(head.starts_with("HTTP/1.0 200"), "{head}");
+    body.to_vec()
+}
+
 /// Sends a request as it stands; the whole answer as text.
 pub(crate) fn raw(server: &Server, request: &str) -> String {
+    String::from_utf8_lossy(&raw_bytes(server, request)).into_owned()
+}
+
+fn raw_bytes(server: &Server, request: &str) -> Vec<u8> {
     let mut stream = TcpStream::connect(server.host()).expect("the studio listens");
     stream
         .set_read_timeout(Some(Duration::from_secs(60)))
@@ -109,5 +125,5 @@ pub(crate) fn raw(server: &Server, request: &str) -> String {
     let mut answer = Vec::new();
     // A server that has said enough may close before everything was read.
     drop(stream.read_to_end(&mut answer));
-    String::from_utf8_lossy(&answer).into_owned()
+    answer
 }

@@ -1,0 +1,75 @@
+// What buttons and keys of the page do, beside those of the panels.
+
+import { listen, showKeys } from "./keys.js";
+import { HEATS, STYLES } from "./painter.js";
+
+const $ = (id) => document.getElementById(id);
+const next = (list, item) => list[(list.indexOf(item) + 1) % list.length];
+const press = (id) => () => !$(id).disabled && !$(id).hidden && $(id).click();
+
+const setStyle = (app, style) => {
+  app.prefer({ style });
+  document.querySelector(`input[name=style][value=${style}]`).checked = true;
+};
+
+const setTheme = (app) => {
+  app.prefer({ theme: app.theme === "dark" ? "light" : "dark" });
+  app.dress();
+};
+
+const playOrPause = () => [$("pause"), $("resume"), $("drape")].find((b) => !b.hidden && !b.disabled)?.click();
+
+const toggleOverlay = (app) => {
+  $("opacity").value = Number($("opacity").value) > 0 ? 0 : 0.5;
+  app.painter.invalidate(app.views.result);
+};
+
+const withChosen = (app, what, more = () => ({})) => {
+  const landmark = app.chosenLandmark;
+  if (landmark) app.ask(what, { landmark: landmark.id, ...more(landmark) });
+};
+
+const help = () => $("keys-dialog").showModal();
+
+const controlButtons = (app) => {
+  const on = (id, event, action) => $(id).addEventListener(event, action);
+  const { cameras, stage } = app;
+  on("theme", "click", () => setTheme(app));
+  on("help", "click", help);
+  on("home", "click", () => cameras.home());
+  on("align", "click", () => cameras.align());
+  on("zoom-in", "click", () => cameras.change((camera) => camera.zoom(0.8)));
+  on("zoom-out", "click", () => cameras.change((camera) => camera.zoom(1.25)));
+  on("heat", "change", () => stage.setHeat($("heat").value));
+  on("opacity", "input", () => app.painter.invalidate(app.views.result));
+  on("linked", "change", () => app.prefer({ linked: $("linked").checked }));
+  $("linked").checked = app.preferences.linked;
+  document.querySelectorAll("input[name=style]").forEach((input) => {
+    input.checked = input.value === app.preferences.style;
+    input.addEventListener("change", () => setStyle(app, input.value));
+  });
+};
+
+export const control = (app) => {
+  controlButtons(app);
+  showKeys($("keys"));
+  const { cameras, stage } = app;
+  const camera = (change) => () => cameras.change(change);
+  const remove = () => withChosen(app, "delete");
+  listen({
+    d: press("drape"), " ": playOrPause, ".": press("step"), e: press("extend"),
+    "ctrl z": press("undo"), "ctrl shift z": press("redo"), "ctrl y": press("redo"),
+    delete: remove, backspace: remove,
+    f2: () => app.panels.rename(app.chosen),
+    r: () => withChosen(app, "kind", (l) => ({ kind: l.kind === "soft" ? "rigid" : "soft" })),
+    m: () => $("mirror").click(), escape: () => app.choose(null),
+    home: () => cameras.home(), f: () => cameras.frameChosen(), l: () => $("linked").click(), a: () => cameras.align(), u: () => cameras.toggleUp(),
+    1: () => cameras.look(0, 0), 3: () => cameras.look(Math.PI / 2, 0), 7: () => cameras.look(0, Math.PI / 2),
+    arrowleft: camera((c) => c.orbit(12, 0)), arrowright: camera((c) => c.orbit(-12, 0)),
+    arrowup: camera((c) => c.orbit(0, 12)), arrowdown: camera((c) => c.orbit(0, -12)),
+    "+": camera((c) => c.zoom(0.8)), "=": camera((c) => c.zoom(0.8)), "-": camera((c) => c.zoom(1.25)),
+    z: () => setStyle(app, next(STYLES, app.preferences.style)),
+    h: () => stage.setHeat(next(["", ...Object.keys(HEATS)], stage.heat)),
+    o: () => toggleOverlay(app), t: () => setTheme(app), "?": help,
+  });
+};

@@ -1,0 +1,128 @@
+// The shapes in the views: loaded, moved, coloured.
+
+import { fetchShape } from "./link.js";
+import { length, subtract } from "./maths.js";
+import { HEATS } from "./painter.js";
+import { Shape } from "./shapes.js";
+
+const $ = (id) => document.getElementById(id);
+// With fewer landmarks the source's view is not turned by itself.
+const ENOUGH_TO_ALIGN = 4;
+// In milliseconds.
+const SOON = 120;
+
+export class Stage {
+  constructor(app) {
+    this.app = app;
+    this.frame = null;
+    this.heat = "";
+    this.isHeatAsked = false;
+    this.heatSerial = null;
+    this.hashes = {};
+  }
+
+  // Loads a shape if it is another than the one shown.
+  async load(side, about) {
+    const { app } = this;
+    const hash = about ? about.hash : null;
+    if (this.hashes[side] === hash) return;
+    this.hashes[side] = hash;
+    [side, "result"].forEach((name) => this.drop(app.views.of(name)));
+    app.setFigures(null);
+    if (!hash) return;
+    try {
+      const buffers = await fetchShape(side, hash);
+      if (this.hashes[side] !== hash) return;
+      const view = app.views.of(side);
+      view.shape = new Shape(app.painter.renderer.gl, buffers);
+      view.camera.home();
+      app.cameras.frame(view);
+      if (side === "source") app.parts.colour();
+      this.takeFrame();
+      app.painter.invalidate();
+    } catch (error) {
+      this.hashes[side] = undefined;
+      app.words.complain(error);
+    }
+  }
+
+  drop(view) {
+    view.shape?.free();
+    view.shape = null;
+    this.app.painter.invalidate(view);
+  }
+
+  // A shape of the result: four numbers (1, serial, kind, iteration), then positions. Or a heat map: (2, serial,
+  // kind, whether by triangle), then values.
+  receive(bytes) {
+    const { views, words, painter } = this.app;
+    const [what, serial, kind, more] = new Uint32Array(bytes, 0, 4);
+    const numbers = new Float32Array(bytes, 16);
+    if (what === 1) {
+      this.frame = { serial, kind, iteration: more, positions: numbers };
+      this.takeFrame();
+      this.acknowledge(serial);
+    } else if (views.result.shape && this.heat) {
+      this.isHeatAsked = false;
+      views.result.shape.colour(numbers, more === 1);
+      this.heatSerial = serial;
+      this.askHeat();
+    }
+    words.nameViews();
+    painter.invalidate(views.result);
+  }
+
+  // The next shape may come once this one is drawn, or soon where drawing takes long.
+  acknowledge(serial) {
+    let isTold = false;
+    const tell = () => {
+      if (!isTold) this.app.link.tell({ ready: serial });
+      isTold = true;
+    };
+    requestAnimationFrame(tell);
+    setTimeout(tell, SOON);
+  }
+
+  // Puts the newest positions into the result's view.
+  takeFrame() {
+    const { app, frame } = this;
+    const { source, target, result } = app.views;
+    if (!frame || !source.shape || !target.shape) return;
+    if (frame.positions.length !== source.shape.positions.length) return;
+    if (result.shape) {
+      result.shape.move(frame.positions);
+    } else {
+      const { triangles, edges } = source.shape;
+      result.shape = new Shape(app.painter.renderer.gl, { positions: frame.positions, triangles, edges, normals: null });
+      result.camera.look(target.camera.yaw, target.camera.pitch);
+      app.cameras.frame(result);
+      const isMarked = app.state.landmarks.filter((l) => l.source && l.target).length >= ENOUGH_TO_ALIGN;
+      if (isMarked) app.cameras.align();
+    }
+    this.askHeat();
+  }
+
+  askHeat() {
+    if (!this.heat || this.isHeatAsked || this.heatSerial === this.frame?.serial) return;
+    this.isHeatAsked = true;
+    this.app.link.tell({ heat: this.heat });
+  }
+
+  setHeat(heat) {
+    const { views, painter } = this.app;
+    [this.heat, this.heatSerial, this.isHeatAsked] = [heat, null, false];
+    $("heat").value = heat;
+    $("legend").hidden = !heat;
+    if (heat) [, , $("legend-low").textContent, $("legend-high").textContent] = HEATS[heat];
+    else views.result.shape?.colour(null, false);
+    this.askHeat();
+    painter.invalidate();
+  }
+
+  // How far each landmark of the shown result is from its place, in longest sides of the target's box.
+  misses(landmarks) {
+    const { result } = this.app.views;
+    const entries = landmarks.filter((l) => l.source && l.target && result.shape);
+    return new Map(entries.map((l) => [l.id, length(subtract(result.place(l).point, l.target.point))]));
+  }
+}

@@ -1,0 +1,90 @@
+// What the page says: titles, advice, complaints.
+
+import { FORMATS } from "./panels.js";
+
+const $ = (id) => document.getElementById(id);
+const KINDS = ["Preview: the source brought to its landmarks", "", "Preview: how the drape goes on"];
+// How long a complaint stays, in milliseconds.
+const PATIENCE = 9000;
+
+// The next thing to do.
+const advice = ({ source, target, landmarks, run }) => {
+  const half = landmarks.find((l) => !l.source || !l.target);
+  if (!source && !target) return "Open or drop a source and a target to begin";
+  if (!source) return "Now open or drop the source: the mesh to deform";
+  if (!target) return "Now open or drop the target: the shape to drape over";
+  if (half) return `Now click the same place on the ${half.source ? "target" : "source"}`;
+  if (run.status === "running") return "Mark or drag landmarks at any time: they take effect at once";
+  if (run.pending) return "Resume: the drape goes on with what you changed";
+  if (landmarks.length === 0) return "Click a place on the source, then the same place on the target";
+  if (run.status === "finished") return "Add landmarks where the result is off and resume, let it go on, or export";
+  if (landmarks.length < 5) return "Mark some more pairs of places, or drape";
+  return run.status === "none" ? "Drape, or mark more places" : "";
+};
+
+export class Words {
+  constructor(app) {
+    this.app = app;
+    this.isSaying = false;
+  }
+
+  // Says what goes on, until nothing does.
+  say(text) {
+    $("hint").textContent = text;
+    this.isSaying = Boolean(text);
+    if (!text) this.advise();
+  }
+
+  complain(error) {
+    this.isSaying = false;
+    this.advise();
+    const toast = $("toast");
+    toast.textContent = error.message.charAt(0).toUpperCase() + error.message.slice(1);
+    toast.hidden = false;
+    clearTimeout(this.timer);
+    this.timer = setTimeout(() => (toast.hidden = true), PATIENCE);
+  }
+
+  advise() {
+    const { state } = this.app;
+    if (this.isSaying || !state) return;
+    $("hint").textContent = $("hint").title = advice(state);
+  }
+
+  nameViews() {
+    const { views, state, stage } = this.app;
+    const { source, target, result } = views;
+    const about = (s) => (s ? `${s.name} · ${s.n_vertices.toLocaleString("en")} ${s.kind === "cloud" ? "points" : "vertices"}` : "");
+    const set = (view, title, text) => {
+      view.title.textContent = title;
+      view.about.textContent = text;
+    };
+    set(source, "Source", about(state?.source));
+    set(target, "Target", about(state?.target));
+    const { frame } = stage;
+    const isShown = Boolean(result.shape && frame);
+    set(result, "Result", isShown ? KINDS[frame.kind] || `After ${frame.iteration} iterations` : "");
+    const status = state?.run.status;
+    result.badge.hidden = !["running", "paused"].includes(status);
+    result.badge.textContent = status === "running" ? "live" : "paused";
+    this.invite(source, !state?.source, "The mesh you like", "Drop it here: its quads, UVs and groups survive.", "source");
+    this.invite(target, !state?.target, "The shape you want", "Drop a mesh, a raw scan or a point cloud here.", "target");
+    this.invite(result, !(state?.source && state?.target), "The result", "The source in the target's shape will show here, from the first landmark on.", null);
+  }
+
+  // What an empty view is for.
+  invite(view, isEmpty, title, text, role) {
+    if (view.empty.hidden === !isEmpty) return;
+    view.empty.hidden = !isEmpty;
+    view.empty.replaceChildren();
+    if (!isEmpty) return;
+    const make = (tag, content) => Object.assign(document.createElement(tag), { textContent: content });
+    view.empty.append(make("b", title), make("span", text));
+    if (role) {
+      const button = make("button", "Choose a file…");
+      button.className = "main";
+      button.addEventListener("click", () => this.app.panels.chooseFile(role));
+      view.empty.append(button, make("span", FORMATS.replaceAll(",", " ")));
+    }
+  }
+}
