@@ -3,16 +3,19 @@
 use crate::{Point3, Positions, Triangulation, Vector3, VertexData};
 
 /// Twice the area of a triangle times its unit normal: `(b − a) × (c − a)`.
+#[inline]
 pub fn area_vector([a, b, c]: [Point3; 3]) -> Vector3 {
     (b - a).cross(&(c - a))
 }
 
 /// Area of a triangle, in squared units of its coordinates; 0 when degenerate.
+#[inline]
 pub fn triangle_area(corners: [Point3; 3]) -> f64 {
     0.5 * area_vector(corners).norm()
 }
 
 /// Unit normal of a triangle by the right-hand rule; none when degenerate.
+#[inline]
 pub fn triangle_normal(corners: [Point3; 3]) -> Option<Vector3> {
     area_vector(corners).try_normalize(f64::MIN_POSITIVE)
 }
@@ -20,6 +23,7 @@ pub fn triangle_normal(corners: [Point3; 3]) -> Option<Vector3> {
 /// Angle at `apex` between the directions to `b` and `c`, in radians: `atan2(|u × v|, u·v)`.
 ///
 /// Degenerate input (a zero side) gives 0.
+#[inline]
 pub fn corner_angle(apex: Point3, b: Point3, c: Point3) -> f64 {
     let (u, v) = (b - apex, c - apex);
     u.cross(&v).norm().atan2(u.dot(&v))
@@ -31,6 +35,7 @@ pub fn corner_angle(apex: Point3, b: Point3, c: Point3) -> f64 {
 ///
 /// Units: none; invariant to rigid motion, uniform scale and vertex order. Degenerate input: one point gives 0.
 /// Source: Mesh Draping, Eq. 4, after Liu et al. 2020. Departures: none.
+#[inline]
 pub fn triangle_quality([a, b, c]: [Point3; 3]) -> f64 {
     let edges = (b - a).norm_squared() + (c - b).norm_squared() + (a - c).norm_squared();
     if edges == 0.0 {
@@ -125,11 +130,13 @@ impl UnitFrame {
     }
 
     /// From the shape's coordinates into the unit frame.
+    #[inline]
     pub fn to_unit(&self, p: &Point3) -> Point3 {
         Point3::from((p - self.center) / self.scale)
     }
 
     /// From the unit frame back to the shape's coordinates.
+    #[inline]
     pub fn from_unit(&self, p: &Point3) -> Point3 {
         self.center + p.coords * self.scale
     }

@@ -57,15 +57,40 @@ impl TriangleSampler {
         else {
             return Vec::new();
         };
-        let shift = [rng.random::<f64>(), rng.random::<f64>()];
+        let mut point = [rng.random::<f64>(), rng.random::<f64>()];
+        let mut triangle = 0;
         (0..n)
             .map(|k| {
                 let at = total * (k as f64 + rng.random::<f64>()) / n as f64;
-                let triangle = self.cumulative.partition_point(|&sum| sum <= at).min(last);
-                let [r, s] = [0, 1].map(|i| (shift[i] + R2[i] * k as f64).fract());
-                (triangle, uniform_weights(r, s))
+                triangle = self.first_beyond(at, triangle).min(last);
+                point = [0, 1].map(|i| wrapped(point[i] + R2[i]));
+                (triangle, uniform_weights(point[0], point[1]))
             })
             .collect()
+    }
+
+    /// The first row from `start` on whose sum is beyond `at`, found in steps that double.
+    fn first_beyond(&self, at: f64, start: usize) -> usize {
+        let (mut start, mut step) = (start, 1);
+        while self
+            .cumulative
+            .get(start + step)
+            .is_some_and(|&sum| sum <= at)
+        {
+            start += step;
+            step *= 2;
+        }
+        let end = (start + step + 1).min(self.cumulative.len());
+        start + self.cumulative[start..end].partition_point(|&sum| sum <= at)
+    }
+}
+
+/// `x` in 0..2 without its whole part.
+fn wrapped(x: f64) -> f64 {
+    if x < 1.0 {
+        x
+    } else {
+        x - 1.0
     }
 }
 

@@ -46,21 +46,21 @@ impl Loss for CornerAngle<'_> {
             let length = doubled.norm();
             // Opposite sides: side k faces corner k.
             let sides = [c - b, a - c, b - a];
+            let excess = differences(angles(length, &sides), reference);
+            sum += excess.iter().map(|e| e * e).sum::<f64>();
+            if length <= f64::MIN_POSITIVE {
+                continue;
+            }
+            // ∂α/∂u = −n × u / |u|², ∂α/∂v = n × v / |v|² for the angle from u to v around n.
+            let scale = 2.0 * weight * share / length;
+            let turn = sides.map(|side| doubled.cross(&side) * (scale / side.norm_squared()));
             let mut at_corner = [Vector3::zeros(); 3];
             for k in 0..3 {
                 let (next, last) = ((k + 1) % 3, (k + 2) % 3);
-                let (to_next, to_last) = (sides[last], -sides[next]);
-                let excess = length.atan2(to_next.dot(&to_last)) - reference[k];
-                sum += excess * excess;
-                if length > f64::MIN_POSITIVE {
-                    // ∂α/∂u = −n × u / |u|², ∂α/∂v = n × v / |v|² for the angle from u to v around n.
-                    let scale = 2.0 * weight * share * excess / length;
-                    let by_next = doubled.cross(&to_next) * (-scale / to_next.norm_squared());
-                    let by_last = doubled.cross(&to_last) * (scale / to_last.norm_squared());
-                    at_corner[next] += by_next;
-                    at_corner[last] += by_last;
-                    at_corner[k] -= by_next + by_last;
-                }
+                let (by_next, by_last) = (turn[last] * excess[k], turn[next] * excess[k]);
+                at_corner[next] -= by_next;
+                at_corner[last] -= by_last;
+                at_corner[k] += by_next + by_last;
             }
             for (&v, g) in t.iter().zip(at_corner) {
                 grad[v] += g;
@@ -68,4 +68,21 @@ impl Loss for CornerAngle<'_> {
         }
         sum * share
     }
+}
+
+/// The corner angles of a triangle of doubled area `length`: they sum to π.
+#[inline]
+fn angles(length: f64, sides: &[Vector3; 3]) -> [f64; 3] {
+    let angle = |k: usize| length.atan2(-sides[(k + 1) % 3].dot(&sides[(k + 2) % 3]));
+    let [alpha, beta] = [angle(0), angle(1)];
+    let gamma = if length > f64::MIN_POSITIVE {
+        std::f64::consts::PI - alpha - beta
+    } else {
+        angle(2)
+    };
+    [alpha, beta, gamma]
+}
+
+fn differences(a: [f64; 3], b: &[f64; 3]) -> [f64; 3] {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
 }

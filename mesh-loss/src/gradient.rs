@@ -10,6 +10,7 @@ pub(crate) struct AreaGradient {
 }
 
 /// `∂A/∂a = ½ n × (c − b)`, and cyclically.
+#[inline]
 pub(crate) fn area_gradient([a, b, c]: [Point3; 3]) -> Option<AreaGradient> {
     let doubled = area_vector([a, b, c]);
     let length = doubled.norm();
@@ -27,6 +28,7 @@ pub(crate) fn area_gradient([a, b, c]: [Point3; 3]) -> Option<AreaGradient> {
 ///
 /// `∂L/∂N = (g − (g·n) n) / |N|`; with `N = (b − a) × (c − a)`, `∂L/∂b = (c − a) × ∂L/∂N`,
 /// `∂L/∂c = ∂L/∂N × (b − a)` and `∂L/∂a = −∂L/∂b − ∂L/∂c`.
+#[inline]
 pub(crate) fn pull_back_normal([a, b, c]: [Point3; 3], g: &Vector3) -> [Vector3; 3] {
     let doubled = area_vector([a, b, c]);
     let length = doubled.norm();
@@ -34,8 +36,13 @@ pub(crate) fn pull_back_normal([a, b, c]: [Point3; 3], g: &Vector3) -> [Vector3;
         return [Vector3::zeros(); 3];
     }
     let n = doubled / length;
-    let by_area_vector = (g - n * g.dot(&n)) / length;
-    let at_b = (c - a).cross(&by_area_vector);
-    let at_c = by_area_vector.cross(&(b - a));
+    pull_back_area_vector([a, b, c], &((g - n * g.dot(&n)) / length))
+}
+
+/// Gradient at the corners from the gradient `g` with respect to `N = (b − a) × (c − a)`.
+#[inline]
+pub(crate) fn pull_back_area_vector([a, b, c]: [Point3; 3], g: &Vector3) -> [Vector3; 3] {
+    let at_b = (c - a).cross(g);
+    let at_c = g.cross(&(b - a));
     [-at_b - at_c, at_b, at_c]
 }

@@ -4,7 +4,7 @@ use mesh_core::sampling::TrianglePlace;
 use mesh_core::{Point3, Positions, SurfaceSample, TargetSurface, TriangleBvh, Triangulation};
 use rand::{Rng, RngCore};
 
-use crate::matching::{Side, SurfaceMatch};
+use crate::matching::{Side, SurfaceMatch, NO_HINT};
 
 /// The corners kept in mind, as rows: what a matcher remembers from one resampling to the next.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -21,6 +21,8 @@ pub struct HardCorners {
 pub(crate) struct HardPlaces {
     mesh_corners: Vec<TrianglePlace>,
     target_corners: Vec<Point3>,
+    /// What was hit last time: on the target from the mesh's corners, and from its own; on the mesh from the target's.
+    hints: [Vec<u32>; 3],
     kept: HardCorners,
 }
 
@@ -37,9 +39,13 @@ impl HardPlaces {
                 corner_of[v.index()].get_or_insert((t, barycentric));
             }
         }
+        let mesh_corners: Vec<TrianglePlace> = corner_of.into_iter().flatten().collect();
+        let target_corners = target.vertices();
+        let (n, m) = (mesh_corners.len(), target_corners.len());
         Self {
-            mesh_corners: corner_of.into_iter().flatten().collect(),
-            target_corners: target.vertices(),
+            hints: [n, m, m].map(|n| vec![NO_HINT; n]),
+            mesh_corners,
+            target_corners,
             kept: HardCorners::default(),
         }
     }
@@ -47,7 +53,6 @@ impl HardPlaces {
     /// The mesh's far corners, each with its closest point on the target.
     pub(crate) fn match_mesh(
         &mut self,
-        x: &Positions,
         side: &Side<'_>,
         rng: &mut dyn RngCore,
     ) -> Vec<SurfaceMatch> {
@@ -55,7 +60,10 @@ impl HardPlaces {
         let mut rows = std::mem::take(&mut self.kept.of_mesh);
         rows.extend(random_rows(n, self.mesh_corners.len(), rng));
         let places: Vec<TrianglePlace> = rows.iter().map(|&k| self.mesh_corners[k]).collect();
-        let (rows, pairs) = farthest(rows, side.match_places(&places, x), x, n);
+        let pairs = with_hints(&rows, &mut self.hints[0], |hints| {
+            side.match_places(&places, hints)
+        });
+        let (rows, pairs) = farthest(rows, pairs, side.x, n);
         self.kept.of_mesh = rows;
         pairs
     }
@@ -63,7 +71,6 @@ impl HardPlaces {
     /// The target's far corners, each with its closest place on the mesh.
     pub(crate) fn match_target(
         &mut self,
-        x: &Positions,
         bvh: &TriangleBvh,
         side: &Side<'_>,
         rng: &mut dyn RngCore,
@@ -71,16 +78,22 @@ impl HardPlaces {
         let n = side.config.n_hard;
         let mut rows = std::mem::take(&mut self.kept.of_target);
         rows.extend(random_rows(n, self.target_corners.len(), rng));
-        let points: Vec<Point3> = rows.iter().map(|&k| self.target_corners[k]).collect();
-        let samples: Vec<SurfaceSample> = points
-            .iter()
-            .zip(side.target.closest_points(&points))
-            .map(|(&point, hit)| SurfaceSample {
-                point,
-                location: hit.location,
-            })
-            .collect();
-        let (rows, pairs) = farthest(rows, side.match_samples(&samples, bvh), x, n);
+        let corners = &self.target_corners;
+        let samples: Vec<SurfaceSample> = with_hints(&rows, &mut self.hints[1], |hints| {
+            let of_row = |(&k, hint): (&usize, &mut u32)| {
+                let hit = side.target.closest_point_from(&corners[k], *hint);
+                *hint = hit.location.row();
+                SurfaceSample {
+                    point: corners[k],
+                    location: hit.location,
+                }
+            };
+            rows.iter().zip(hints).map(of_row).collect()
+        });
+        let pairs = with_hints(&rows, &mut self.hints[2], |hints| {
+            side.match_samples(&samples, bvh, hints)
+        });
+        let (rows, pairs) = farthest(rows, pairs, side.x, n);
         self.kept.of_target = rows;
         pairs
     }
@@ -107,6 +120,16 @@ impl HardPlaces {
 fn random_rows(n: usize, len: usize, rng: &mut dyn RngCore) -> impl Iterator<Item = usize> + '_ {
     let n = if len == 0 { 0 } else { n };
     (0..n).map(move |_| rng.random_range(0..len))
+}
+
+/// Lets `work` use and renew the hints of these rows.
+fn with_hints<R>(rows: &[usize], of_all: &mut [u32], work: impl FnOnce(&mut [u32]) -> R) -> R {
+    let mut hints: Vec<u32> = rows.iter().map(|&k| of_all[k]).collect();
+    let done = work(&mut hints);
+    for (&k, hint) in rows.iter().zip(hints) {
+        of_all[k] = hint;
+    }
+    done
 }
 
 /// The `n` rows whose pairs are farthest off, the farthest first, each once.

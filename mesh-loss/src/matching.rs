@@ -1,5 +1,6 @@
 //! Random places on both surfaces and their closest points on the other: what the distance terms look at.
 
+use mesh_core::measure::{triangle_area, triangle_normal};
 use mesh_core::sampling::{TrianglePlace, TriangleSampler};
 use mesh_core::{
     Location, NormalSign, Point3, Positions, Profile, SurfaceSample, TargetSurface, TriangleBvh,
@@ -92,6 +93,8 @@ pub struct SurfaceMatcher<'a> {
     frame: UnitFrame,
     bvh: TriangleBvh,
     boundary: Boundary,
+    by_face: TriangleSampler,
+    hints: Hints,
     hard: HardPlaces,
 }
 
@@ -109,6 +112,8 @@ impl<'a> SurfaceMatcher<'a> {
             frame,
             bvh: TriangleBvh::new(triangulation.corners(x).collect()),
             boundary: Boundary::new(triangulation, x.len()),
+            by_face: TriangleSampler::new(std::iter::repeat_n(1.0, triangulation.len())),
+            hints: Hints::default(),
             hard: HardPlaces::new(triangulation, x.len(), target),
         }
     }
@@ -163,124 +168,128 @@ impl<'a> SurfaceMatcher<'a> {
         profile: &mut Profile,
     ) -> Matches {
         profile.time("refit", || self.bvh.refit(self.triangulation.corners(x)));
-        let normals: Vec<Option<Vector3>> = self
-            .triangulation
-            .corners(x)
-            .map(mesh_core::measure::triangle_normal)
-            .collect();
+        let places = profile.time("sampling", || self.sample_mesh(x, config, rng));
+        let samples = profile.time("sampling", || self.target.sample(config.n_samples, rng));
+        self.hints.of_places.resize(places.len(), NO_HINT);
+        self.hints.of_samples.resize(samples.len(), NO_HINT);
         let side = Side {
             triangulation: self.triangulation,
+            x,
             target: self.target,
             frame: self.frame,
-            normals: &normals,
             boundary: &self.boundary,
             config,
         };
+        let (hints, hard) = (&mut self.hints, &mut self.hard);
+        let to_target = profile.time("closest on target", || {
+            side.match_places(&places, &mut hints.of_places)
+        });
+        let to_mesh = profile.time("closest on mesh", || {
+            side.match_samples(&samples, &self.bvh, &mut hints.of_samples)
+        });
         Matches {
-            to_target: side.to_target(x, rng, profile),
-            to_mesh: side.to_mesh(&self.bvh, rng, profile),
-            hard_to_target: profile.time("worst places", || self.hard.match_mesh(x, &side, rng)),
-            hard_to_mesh: profile.time("worst places", || {
-                self.hard.match_target(x, &self.bvh, &side, rng)
-            }),
+            to_target: to_target.into_iter().flatten().collect(),
+            to_mesh: to_mesh.into_iter().flatten().collect(),
+            hard_to_target: profile.time("worst places", || hard.match_mesh(&side, rng)),
+            hard_to_mesh: profile.time("worst places", || hard.match_target(&self.bvh, &side, rng)),
         }
     }
+
+    /// Random places on the mesh: some by area, some by face.
+    fn sample_mesh(
+        &self,
+        x: &Positions,
+        config: &SamplingConfig,
+        rng: &mut dyn RngCore,
+    ) -> Vec<TrianglePlace> {
+        let n_by_face = (config.n_samples as f64 * config.face_uniform).round() as usize;
+        let n_by_area = config.n_samples.saturating_sub(n_by_face);
+        let areas = self.triangulation.corners(x).map(triangle_area);
+        let mut places = self.by_face.sample(n_by_face, rng);
+        places.extend(TriangleSampler::new(areas).sample(n_by_area, rng));
+        places
+    }
 }
+
+/// What was hit last time: the k-th sample is always drawn near the same place, so it is close to what comes next.
+#[derive(Default)]
+struct Hints {
+    of_places: Vec<u32>,
+    of_samples: Vec<u32>,
+}
+
+/// A row that no shape has.
+pub(crate) const NO_HINT: u32 = u32::MAX;
 
 /// What both directions of one resampling need.
 pub(crate) struct Side<'a> {
     triangulation: &'a Triangulation,
+    pub(crate) x: &'a Positions,
     pub(crate) target: &'a dyn TargetSurface,
     frame: UnitFrame,
-    normals: &'a [Option<Vector3>],
     boundary: &'a Boundary,
     pub(crate) config: &'a SamplingConfig,
 }
 
+/// So many queries are one piece of parallel work.
+const CHUNK: usize = 256;
+
 impl Side<'_> {
-    fn to_target(
-        &self,
-        x: &Positions,
-        rng: &mut dyn RngCore,
-        profile: &mut Profile,
-    ) -> Vec<SurfaceMatch> {
-        let places = profile.time("sampling", || {
-            sample_mesh(self.triangulation, x, self.config, rng)
-        });
-        let pairs = profile.time("closest on target", || self.match_places(&places, x));
-        pairs.into_iter().flatten().collect()
-    }
-
-    fn to_mesh(
-        &self,
-        bvh: &TriangleBvh,
-        rng: &mut dyn RngCore,
-        profile: &mut Profile,
-    ) -> Vec<SurfaceMatch> {
-        let n = self.config.n_samples;
-        let samples = profile.time("sampling", || self.target.sample(n, rng));
-        let pairs = profile.time("closest on mesh", || self.match_samples(&samples, bvh));
-        pairs.into_iter().flatten().collect()
-    }
-
-    /// The closest point of the target to each place of the mesh at `x`; none beyond the target.
+    /// The closest point of the target to each place of the mesh; none beyond the target.
+    ///
+    /// `hints` has a row of the target for each place, and holds afterwards the rows that were hit.
     pub(crate) fn match_places(
         &self,
         places: &[TrianglePlace],
-        x: &Positions,
+        hints: &mut [u32],
     ) -> Vec<Option<SurfaceMatch>> {
-        let points: Vec<Point3> = places
-            .iter()
-            .map(|&(t, w)| {
-                let [a, b, c] = self.triangulation.triangles()[t].map(|v| x[v].coords);
-                self.frame
-                    .from_unit(&Point3::from(a * w[0] + b * w[1] + c * w[2]))
-            })
-            .collect();
-        let hits = self.target.closest_points(&points);
-        places
-            .iter()
-            .zip(&hits)
-            .map(|(&(t, w), hit)| {
-                let is_on_rim = self.target.is_on_boundary(&hit.location);
-                let pair = self.pair(t, w, self.frame.to_unit(&hit.point), &hit.location);
-                (!(is_on_rim && self.config.overlap.mesh_exceeds))
-                    .then_some(SurfaceMatch { is_on_rim, ..pair })
-            })
-            .collect()
+        let queries = places.par_iter().zip(hints).with_min_len(CHUNK);
+        let pairs = queries.map(|(&(t, w), hint)| {
+            let [a, b, c] = self.triangulation.triangles()[t].map(|v| self.x[v].coords);
+            let place = Point3::from(a * w[0] + b * w[1] + c * w[2]);
+            let query = self.frame.from_unit(&place);
+            let hit = self.target.closest_point_from(&query, *hint);
+            *hint = hit.location.row();
+
+            let is_on_rim = self.target.is_on_boundary(&hit.location);
+            let pair = self.pair(t, w, self.frame.to_unit(&hit.point), &hit.location);
+            (!(is_on_rim && self.config.overlap.mesh_exceeds))
+                .then_some(SurfaceMatch { is_on_rim, ..pair })
+        });
+        pairs.collect()
     }
 
     /// The closest place of the mesh to each sample of the target; none beyond the mesh.
+    ///
+    /// `hints` has a triangle of the mesh for each sample, and holds afterwards those that were hit.
     pub(crate) fn match_samples(
         &self,
         samples: &[SurfaceSample],
         bvh: &TriangleBvh,
+        hints: &mut [u32],
     ) -> Vec<Option<SurfaceMatch>> {
-        let points: Vec<Point3> = samples
-            .iter()
-            .map(|s| self.frame.to_unit(&s.point))
-            .collect();
-        let hits = bvh.closest_points(&points);
-        samples
-            .par_iter()
-            .with_min_len(256)
-            .zip(&points)
-            .zip(&hits)
-            .map(|((sample, point), hit)| {
-                let Location::Triangle { index, barycentric } = hit.location else {
-                    return None;
-                };
-                let t = index as usize;
-                let is_on_rim = self.boundary.holds(t, barycentric);
-                let pair = self.pair(t, barycentric, *point, &sample.location);
-                (!(is_on_rim && self.config.overlap.target_exceeds))
-                    .then_some(SurfaceMatch { is_on_rim, ..pair })
-            })
-            .collect()
+        let queries = samples.par_iter().zip(hints).with_min_len(CHUNK);
+        let pairs = queries.map(|(sample, hint)| {
+            let point = self.frame.to_unit(&sample.point);
+            let Location::Triangle { index, barycentric } =
+                bvh.closest_point_from(&point, *hint)?.location
+            else {
+                return None;
+            };
+            *hint = index;
+
+            let t = index as usize;
+            let is_on_rim = self.boundary.holds(t, barycentric);
+            let pair = self.pair(t, barycentric, point, &sample.location);
+            (!(is_on_rim && self.config.overlap.target_exceeds))
+                .then_some(SurfaceMatch { is_on_rim, ..pair })
+        });
+        pairs.collect()
     }
 
     fn pair(&self, t: usize, barycentric: [f64; 3], point: Point3, at: &Location) -> SurfaceMatch {
-        let own = self.normals[t];
+        let triangle = self.triangulation.triangles()[t];
+        let own = triangle_normal(triangle.map(|v| self.x[v]));
         let mut normal = self.target.normal(at);
         if let (NormalSign::Unoriented, Some(n), Some(m)) =
             (self.target.normal_sign(), normal.as_mut(), own)
@@ -291,7 +300,7 @@ impl Side<'_> {
         }
         let agreement = own.zip(normal).map_or(0.0, |(n, m)| n.dot(&m));
         SurfaceMatch {
-            triangle: self.triangulation.triangles()[t],
+            triangle,
             barycentric,
             point,
             normal,
@@ -358,22 +367,4 @@ impl Boundary {
             is_on_side || is_on_corner
         })
     }
-}
-
-/// Random places on the mesh: some by area, some by face.
-fn sample_mesh(
-    triangulation: &Triangulation,
-    x: &Positions,
-    config: &SamplingConfig,
-    rng: &mut dyn RngCore,
-) -> Vec<TrianglePlace> {
-    let n_by_face = (config.n_samples as f64 * config.face_uniform).round() as usize;
-    let n_by_area = config.n_samples.saturating_sub(n_by_face);
-    let areas = triangulation
-        .corners(x)
-        .map(mesh_core::measure::triangle_area);
-    let alike = std::iter::repeat_n(1.0, triangulation.len());
-    let mut places = TriangleSampler::new(alike).sample(n_by_face, rng);
-    places.extend(TriangleSampler::new(areas).sample(n_by_area, rng));
-    places
 }

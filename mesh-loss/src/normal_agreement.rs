@@ -1,9 +1,9 @@
 //! Matched places should face the same way.
 
-use mesh_core::measure::triangle_normal;
+use mesh_core::measure::area_vector;
 use mesh_core::{Positions, Vector3, VertexData};
 
-use crate::gradient::pull_back_normal;
+use crate::gradient::pull_back_area_vector;
 use crate::{Loss, Matches};
 
 /// Mean disagreement of the normals of matched places, both ways.
@@ -21,12 +21,22 @@ impl Loss for NormalAgreement<'_> {
             let share = 1.0 / matches.len().max(1) as f64;
             for pair in matches {
                 let corners = pair.triangle.map(|v| x[v]);
-                let Some((own, other)) = triangle_normal(corners).zip(pair.normal) else {
+                let doubled = area_vector(corners);
+                let length = doubled.norm();
+                let Some(other) = pair.normal.filter(|_| length > f64::MIN_POSITIVE) else {
                     continue;
                 };
-                value += share * pair.weight * (1.0 - own.dot(&other));
-                let g = pull_back_normal(corners, &(other * (-weight * share * pair.weight)));
-                for (&v, g) in pair.triangle.iter().zip(g) {
+                let own = doubled / length;
+                let agreement = own.dot(&other);
+                value += share * pair.weight * (1.0 - agreement);
+                // ∂(−n·m)/∂N = −(m − (n·m) n) / |N|
+                let scale = -weight * share * pair.weight / length;
+                let by_area_vector = (other - own * agreement) * scale;
+                for (&v, g) in pair
+                    .triangle
+                    .iter()
+                    .zip(pull_back_area_vector(corners, &by_area_vector))
+                {
                     grad[v] += g;
                 }
             }

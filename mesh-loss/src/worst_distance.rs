@@ -56,7 +56,7 @@ impl WorstDistance<'_> {
             .iter()
             .chain(hard)
             .enumerate()
-            .map(|(row, pair)| (pair.offset(x).norm(), row))
+            .map(|(row, pair)| (pair.offset(x).norm_squared(), row))
             .collect();
         let farther = |a: &(f64, usize), b: &(f64, usize)| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1));
         ranked.select_nth_unstable_by(k - 1, farther);
@@ -71,7 +71,7 @@ impl WorstDistance<'_> {
                 pair.scatter(&(offset * (weight / (k as f64 * distance))), grad);
             }
         }
-        let excess = |&(distance, _): &(f64, usize)| (distance - self.tolerance).max(0.0);
+        let excess = |&(squared, _): &(f64, usize)| (squared.sqrt() - self.tolerance).max(0.0);
         ranked.iter().map(excess).sum::<f64>() / k as f64
     }
 }

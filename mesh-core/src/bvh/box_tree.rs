@@ -117,17 +117,15 @@ impl BoxTree {
         let mut stack = Stack::new();
         let mut next = (!self.nodes.is_empty()).then_some(0);
         while let Some(child) = next {
-            if child & ITEM != 0 {
+            next = if child & ITEM != 0 {
                 reach = limit(visit(child ^ ITEM));
+                None
             } else {
-                let node = &self.nodes[child as usize];
-                for entry in node.near_last(&point) {
-                    if entry.distance() <= reach {
-                        stack.push(entry);
-                    }
-                }
+                self.nodes[child as usize].descend(&point, reach, &mut stack)
+            };
+            if next.is_none() {
+                next = stack.pop_within(reach);
             }
-            next = stack.pop_within(reach);
         }
     }
 
@@ -206,9 +204,9 @@ impl Node {
         }
     }
 
-    /// The children with lower bounds of their squared distances, farthest first.
+    /// The only child within `reach`, if there is one; several are put off, the nearest last.
     #[inline(always)]
-    fn near_last(&self, query: &QueryPoint) -> [Entry; 4] {
+    fn descend(&self, query: &QueryPoint, reach: f32, stack: &mut Stack) -> Option<u32> {
         let mut squared = Vec4::ZERO;
         for axis in 0..3 {
             let below = self.min[axis] - query.above[axis];
@@ -216,14 +214,24 @@ impl Node {
             let outside = below.max(above).max(Vec4::ZERO);
             squared += outside * outside;
         }
+        let within = squared.cmple(Vec4::splat(reach)).bitmask();
+        if within & within.wrapping_sub(1) == 0 {
+            return (within != 0).then(|| self.children[within.trailing_zeros() as usize]);
+        }
         let [a, b, c, d] = squared.to_array();
         let [i, j, k, l] = self.children;
-        sort_down([
+        let farthest_first = sort_down([
             Entry::new(a, i),
             Entry::new(b, j),
             Entry::new(c, k),
             Entry::new(d, l),
-        ])
+        ]);
+        for entry in farthest_first {
+            if entry.distance() <= reach {
+                stack.push(entry);
+            }
+        }
+        None
     }
 
     /// Whether the box of a child overlaps or touches `query`.

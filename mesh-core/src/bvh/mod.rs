@@ -139,6 +139,9 @@ impl TriangleBvh {
         let mut best: Option<Best> = None;
         let mut nearest = f64::INFINITY;
         let mut visit = |slot: u32| {
+            if best.as_ref().is_some_and(|b| b.slot == slot) {
+                return nearest;
+            }
             let at = closest_point_on_triangle(query, &self.corners[slot as usize]);
             let d = at.distance_squared;
             if d > nearest {

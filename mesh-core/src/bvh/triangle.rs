@@ -31,6 +31,7 @@ impl TrianglePoint {
 ///
 /// Everything is relative to the corner `a`, so accuracy does not suffer far from the origin. Degenerate input: of a
 /// nearly flat triangle all sides are measured, too; a side of length 0 is a point.
+#[inline]
 pub fn closest_point_on_triangle(query: &Point3, &[a, b, c]: &[Point3; 3]) -> TrianglePoint {
     let (ab, ac, aq) = (b - a, c - a, query - a);
     let n = ab.cross(&ac);

@@ -39,6 +39,15 @@ pub enum Location {
     },
 }
 
+impl Location {
+    /// Row of the triangle or point: a hint for the next query nearby.
+    pub const fn row(&self) -> u32 {
+        match *self {
+            Self::Triangle { index, .. } | Self::Point { index } => index,
+        }
+    }
+}
+
 /// The closest point of a surface to a query.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SurfacePoint {
@@ -72,6 +81,10 @@ pub enum NormalSign {
 pub trait TargetSurface: Send + Sync {
     /// The point of the surface closest to `query`; the lowest row among equals.
     fn closest_point(&self, query: &Point3) -> SurfacePoint;
+
+    /// The same answer, found faster if the triangle or point in row `hint` is close to `query`; a row that does not
+    /// exist is no hint.
+    fn closest_point_from(&self, query: &Point3, hint: u32) -> SurfacePoint;
 
     /// The closest point to each query, in parallel; the same bits whatever the thread count.
     fn closest_points(&self, queries: &[Point3]) -> Vec<SurfacePoint> {

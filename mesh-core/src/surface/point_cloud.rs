@@ -95,7 +95,11 @@ impl PointCloud {
 
 impl TargetSurface for PointCloud {
     fn closest_point(&self, query: &Point3) -> SurfacePoint {
-        let (index, distance_squared) = self.tree.nearest(query);
+        self.closest_point_from(query, u32::MAX)
+    }
+
+    fn closest_point_from(&self, query: &Point3, hint: u32) -> SurfacePoint {
+        let (index, distance_squared) = self.tree.nearest(query, hint);
         SurfacePoint {
             point: self.points[index as usize],
             distance_squared,
@@ -200,10 +204,14 @@ impl PointTree {
         self.tree.slot(row)
     }
 
-    /// The nearest point, the lowest row among equals, and its squared distance.
-    fn nearest(&self, query: &Point3) -> (u32, f64) {
+    /// The nearest point, the lowest row among equals, and its squared distance; sooner if that in row `hint` is near.
+    fn nearest(&self, query: &Point3, hint: u32) -> (u32, f64) {
         let mut best = (0, f64::INFINITY);
-        self.tree.nearest(query, f64::INFINITY, |slot| {
+        if (hint as usize) < self.points.len() {
+            let hinted = self.points[self.tree.slot(hint) as usize];
+            best = (hint, (hinted - query).norm_squared());
+        }
+        self.tree.nearest(query, best.1, |slot| {
             let d = (self.points[slot as usize] - query).norm_squared();
             let row = self.tree.rows()[slot as usize];
             if d < best.1 || (d == best.1 && row < best.0) {

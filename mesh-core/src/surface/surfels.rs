@@ -58,7 +58,11 @@ fn shortened(v: Vector3, most: f64) -> Vector3 {
 
 impl TargetSurface for SurfelCloud {
     fn closest_point(&self, query: &Point3) -> SurfacePoint {
-        let nearest = self.cloud.closest_point(query);
+        self.closest_point_from(query, u32::MAX)
+    }
+
+    fn closest_point_from(&self, query: &Point3, hint: u32) -> SurfacePoint {
+        let nearest = self.cloud.closest_point_from(query, hint);
         let Location::Point { index } = nearest.location else {
             return nearest;
         };

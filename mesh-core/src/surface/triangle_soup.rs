@@ -109,6 +109,12 @@ impl TargetSurface for TriangleSoup {
             .expect("a triangle soup has a triangle")
     }
 
+    fn closest_point_from(&self, query: &Point3, hint: u32) -> SurfacePoint {
+        self.bvh
+            .closest_point_from(query, hint)
+            .expect("a triangle soup has a triangle")
+    }
+
     fn sample(&self, n: usize, rng: &mut dyn RngCore) -> Vec<SurfaceSample> {
         let places = self.sampler.sample(n, rng).into_iter();
         places
