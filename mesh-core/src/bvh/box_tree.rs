@@ -10,6 +10,8 @@ use crate::{Aabb, Point3, UnitFrame, Vector3};
 
 /// Covers the rounding of a squared f32 box distance (relative; 4e-7 at most).
 const ROUNDING: f64 = 1e-6;
+/// Covers the rounding of a number to f32 (relative; half a unit in the last place, 2⁻²⁴, at most).
+const TO_SINGLE: f64 = 1.2e-7;
 /// Covers the rounding of squared f64 distances between items of the unit frame (absolute).
 const NEARNESS: f64 = 1e-20;
 /// Covers the rounding of coordinates of the unit frame, which are at most 1, to f32.
@@ -117,15 +119,13 @@ impl BoxTree {
         let mut stack = Stack::new();
         let mut next = (!self.nodes.is_empty()).then_some(0);
         while let Some(child) = next {
-            next = if child & ITEM != 0 {
+            if child & ITEM != 0 {
                 reach = limit(visit(child ^ ITEM));
-                None
             } else {
-                self.nodes[child as usize].descend(&point, reach, &mut stack)
-            };
-            if next.is_none() {
-                next = stack.pop_within(reach);
+                let near_last = self.nodes[child as usize].near_last(&point);
+                stack.push_within(near_last, reach);
             }
+            next = stack.pop_within(reach);
         }
     }
 
@@ -204,9 +204,9 @@ impl Node {
         }
     }
 
-    /// The only child within `reach`, if there is one; several are put off, the nearest last.
+    /// The children with lower bounds of their squared distances, farthest first.
     #[inline(always)]
-    fn descend(&self, query: &QueryPoint, reach: f32, stack: &mut Stack) -> Option<u32> {
+    fn near_last(&self, query: &QueryPoint) -> [Entry; 4] {
         let mut squared = Vec4::ZERO;
         for axis in 0..3 {
             let below = self.min[axis] - query.above[axis];
@@ -214,24 +214,14 @@ impl Node {
             let outside = below.max(above).max(Vec4::ZERO);
             squared += outside * outside;
         }
-        let within = squared.cmple(Vec4::splat(reach)).bitmask();
-        if within & within.wrapping_sub(1) == 0 {
-            return (within != 0).then(|| self.children[within.trailing_zeros() as usize]);
-        }
         let [a, b, c, d] = squared.to_array();
         let [i, j, k, l] = self.children;
-        let farthest_first = sort_down([
+        sort_down([
             Entry::new(a, i),
             Entry::new(b, j),
             Entry::new(c, k),
             Entry::new(d, l),
-        ]);
-        for entry in farthest_first {
-            if entry.distance() <= reach {
-                stack.push(entry);
-            }
-        }
-        None
+        ])
     }
 
     /// Whether the box of a child overlaps or touches `query`.
@@ -274,8 +264,8 @@ impl QueryPoint {
     fn new(p: &Point3) -> Self {
         let p = [p.x, p.y, p.z].map(|c| bounded(c, 1e18));
         Self {
-            below: p.map(|c| Vec4::splat(round_down(c))),
-            above: p.map(|c| Vec4::splat(round_up(c))),
+            below: p.map(|c| Vec4::splat(below(c))),
+            above: p.map(|c| Vec4::splat(above(c))),
         }
     }
 }
@@ -289,22 +279,14 @@ fn bounded(c: f64, limit: f64) -> f64 {
     }
 }
 
-fn round_down(x: f64) -> f32 {
-    let near = x as f32;
-    if f64::from(near) > x {
-        near.next_down()
-    } else {
-        near
-    }
+/// At most `x`, by a few units in the last place of an f32.
+fn below(x: f64) -> f32 {
+    (x - x.abs() * TO_SINGLE) as f32
 }
 
-fn round_up(x: f64) -> f32 {
-    let near = x as f32;
-    if f64::from(near) < x {
-        near.next_up()
-    } else {
-        near
-    }
+/// At least `x`, likewise.
+fn above(x: f64) -> f32 {
+    (x + x.abs() * TO_SINGLE) as f32
 }
 
 /// An f32 box around `b` in the unit frame, at most [`MARGIN`] larger than it must be.

@@ -8,6 +8,7 @@ mod triangle;
 
 pub(crate) use box_tree::BoxTree;
 pub use ray::RayHit;
+use triangle::squared_distance_to_triangle;
 pub use triangle::{closest_point_on_triangle, TrianglePoint};
 
 use rayon::prelude::*;
@@ -35,10 +36,10 @@ pub struct TriangleBvh {
 }
 
 /// The best candidate so far.
+#[derive(Clone, Copy)]
 struct Best {
     row: u32,
     slot: u32,
-    at: TrianglePoint,
 }
 
 impl TriangleBvh {
@@ -139,19 +140,15 @@ impl TriangleBvh {
         let mut best: Option<Best> = None;
         let mut nearest = f64::INFINITY;
         let mut visit = |slot: u32| {
-            if best.as_ref().is_some_and(|b| b.slot == slot) {
-                return nearest;
-            }
-            let at = closest_point_on_triangle(query, &self.corners[slot as usize]);
-            let d = at.distance_squared;
-            if d > nearest {
-                return nearest;
-            }
-            let row = self.tree.rows()[slot as usize];
-            let is_better = d < nearest || best.as_ref().is_none_or(|b| row < b.row);
-            if is_better && accept(row) {
-                best = Some(Best { row, slot, at });
-                nearest = d;
+            let d = squared_distance_to_triangle(query, &self.corners[slot as usize]);
+            // From a point that is no number every distance is none either, and the first will do.
+            if d <= nearest || d.is_nan() {
+                let row = self.tree.rows()[slot as usize];
+                let is_better = d < nearest || best.is_none_or(|b| row < b.row);
+                if is_better && accept(row) {
+                    best = Some(Best { row, slot });
+                    nearest = d;
+                }
             }
             nearest
         };
@@ -161,16 +158,18 @@ impl TriangleBvh {
             _ => f64::INFINITY,
         };
         self.tree.nearest(query, bound, visit);
-        best.map(|b| self.surface_point(&b))
+        best.map(|b| self.surface_point(query, b))
     }
 
-    fn surface_point(&self, best: &Best) -> SurfacePoint {
+    fn surface_point(&self, query: &Point3, best: Best) -> SurfacePoint {
+        let corners = &self.corners[best.slot as usize];
+        let at = closest_point_on_triangle(query, corners);
         SurfacePoint {
-            point: best.at.point(&self.corners[best.slot as usize]),
-            distance_squared: best.at.distance_squared,
+            point: at.point(corners),
+            distance_squared: at.distance_squared,
             location: Location::Triangle {
                 index: best.row,
-                barycentric: best.at.barycentric,
+                barycentric: at.barycentric,
             },
         }
     }

@@ -51,13 +51,17 @@ impl Stack {
         }
     }
 
+    /// Puts off those of four children that are within `reach`, in their order.
     #[inline(always)]
-    pub(super) fn push(&mut self, entry: Entry) {
-        if self.len < STACK {
+    pub(super) fn push_within(&mut self, children: [Entry; 4], reach: f32) {
+        if self.len + children.len() > STACK {
+            let within = children.into_iter().filter(|e| e.distance() <= reach);
+            return self.overflow.extend(within);
+        }
+        for entry in children {
+            // Written in any case, kept if near: there is no branch to be guessed.
             self.entries[self.len] = entry;
-            self.len += 1;
-        } else {
-            self.overflow.push(entry);
+            self.len += usize::from(entry.distance() <= reach);
         }
     }
 
