@@ -14,6 +14,8 @@ use crate::{FaceId, HalfedgeMesh, Point3, Positions, Vector3, VertexData, Vertex
 pub struct Triangulation {
     triangles: Vec<[VertexId; 3]>,
     parents: Vec<FaceId>,
+    /// As simple programs cut, as many a face; none where that is the same.
+    simple: Option<Vec<[VertexId; 3]>>,
 }
 
 /// An edge shared by exactly two triangles of a [`Triangulation`].
@@ -30,16 +32,44 @@ impl Triangulation {
     pub fn new(mesh: &HalfedgeMesh, rest: &Positions) -> Self {
         let mut triangles = Vec::with_capacity(mesh.n_faces() * 2);
         let mut parents = Vec::with_capacity(mesh.n_faces() * 2);
+        let mut simple = Vec::with_capacity(mesh.n_faces() * 2);
         for f in mesh.faces() {
             match *mesh.face_vertices(f) {
                 [] => {}
-                [a, b, c] => triangles.push([a, b, c]),
-                [a, b, c, d] => triangles.extend(split_quad([a, b, c, d], rest)),
-                ref polygon => triangles.extend(split_polygon(polygon, rest)),
+                [a, b, c] => {
+                    triangles.push([a, b, c]);
+                    simple.push([a, b, c]);
+                }
+                [a, b, c, d] => {
+                    let quad = [a, b, c, d];
+                    let normal = polygon_area_vector(&quad.map(|v| rest[v]));
+                    triangles.extend(split_quad(quad, |t| signed_quality(t, rest, &normal)));
+                    simple.extend(split_quad(quad, |t| triangle_quality(t.map(|v| rest[v]))));
+                }
+                ref polygon => {
+                    triangles.extend(split_polygon(polygon, rest));
+                    simple.extend(fan(polygon));
+                }
             }
             parents.resize(triangles.len(), f);
         }
-        Self { triangles, parents }
+        Self {
+            simple: (simple != triangles).then_some(simple),
+            triangles,
+            parents,
+        }
+    }
+
+    /// The same polygons as simple programs cut them, where that differs: quads along the diagonal whose worst triangle
+    /// has the better quality, even where it lies outside, and larger polygons as fans.
+    ///
+    /// A mesh without folds should not seem folded there.
+    pub fn simply_cut(&self) -> Option<Self> {
+        self.simple.as_ref().map(|triangles| Self {
+            triangles: triangles.clone(),
+            parents: self.parents.clone(),
+            simple: None,
+        })
     }
 
     /// All triangles, those of one face together, in face order.
@@ -153,16 +183,17 @@ fn polygon_area_vector(points: &[Point3]) -> Vector3 {
 }
 
 /// Quality of a triangle, negative when it turns against `normal`.
-fn signed_quality(corners: [Point3; 3], normal: &Vector3) -> f64 {
+fn signed_quality(triangle: [VertexId; 3], rest: &Positions, normal: &Vector3) -> f64 {
+    let corners = triangle.map(|v| rest[v]);
     triangle_quality(corners) * crate::measure::area_vector(corners).dot(normal).signum()
 }
 
-fn split_quad([a, b, c, d]: [VertexId; 4], rest: &Positions) -> [[VertexId; 3]; 2] {
-    let normal = polygon_area_vector(&[a, b, c, d].map(|v| rest[v]));
-    let worst = |pair: [[VertexId; 3]; 2]| {
-        let [one, two] = pair.map(|t| signed_quality(t.map(|v| rest[v]), &normal));
-        one.min(two)
-    };
+/// The quad along the diagonal whose worst triangle has the better quality.
+fn split_quad(
+    [a, b, c, d]: [VertexId; 4],
+    quality: impl Fn([VertexId; 3]) -> f64,
+) -> [[VertexId; 3]; 2] {
+    let worst = |[one, two]: [[VertexId; 3]; 2]| quality(one).min(quality(two));
     let (first, second) = ([[a, b, c], [a, c, d]], [[a, b, d], [b, c, d]]);
     if worst(first) >= worst(second) {
         first
@@ -171,16 +202,18 @@ fn split_quad([a, b, c, d]: [VertexId; 4], rest: &Positions) -> [[VertexId; 3]; 
     }
 }
 
+fn fan(polygon: &[VertexId]) -> impl Iterator<Item = [VertexId; 3]> + '_ {
+    polygon[1..]
+        .windows(2)
+        .map(|side| [polygon[0], side[0], side[1]])
+}
+
 /// Constrained Delaunay triangulation of the polygon, projected along its area vector; a fan where the projection
 /// crosses itself.
 fn split_polygon(polygon: &[VertexId], rest: &Positions) -> Vec<[VertexId; 3]> {
     planar_delaunay(polygon, rest)
         .filter(|triangles| triangles.len() == polygon.len() - 2)
-        .unwrap_or_else(|| {
-            (1..polygon.len() - 1)
-                .map(|k| [polygon[0], polygon[k], polygon[k + 1]])
-                .collect()
-        })
+        .unwrap_or_else(|| fan(polygon).collect())
 }
 
 fn planar_delaunay(polygon: &[VertexId], rest: &Positions) -> Option<Vec<[VertexId; 3]>> {
@@ -286,6 +319,30 @@ mod tests {
     fn concave_quad_is_split_inside() {
         let arrow = [[0., 0., 0.], [2., 0., 0.], [0.5, 0.5, 0.], [0., 2., 0.]];
         assert!((area(&arrow) - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn simple_programs_cut_concave_quads_outside_and_polygons_as_fans() {
+        // The kite's inner diagonal cuts slivers, the outer one covers area twice.
+        let kite = [[0., 0., 0.], [1., 5., 0.], [0., 0.5, 0.], [-1., 5., 0.]];
+        let simple = triangulate(&kite).simply_cut().unwrap();
+        let rows = |t: &[VertexId; 3]| t.map(VertexId::index);
+        let cut: Vec<_> = simple.triangles().iter().map(rows).collect();
+        assert_eq!(cut, [[0, 1, 3], [1, 2, 3]]);
+        assert_eq!(simple.parent(1), triangulate(&kite).parent(1));
+
+        let square = [[0., 0., 0.], [1., 0., 0.], [1., 1., 0.], [0., 1., 0.]];
+        assert_eq!(triangulate(&square).simply_cut(), None);
+        let house = [
+            [0., 0., 0.],
+            [1., 0., 0.],
+            [1., 1., 0.],
+            [0.5, 1.5, 0.],
+            [0., 1., 0.],
+        ];
+        let cut = triangulate(&house).simply_cut();
+        let has_fan = cut.is_some_and(|t| t.triangles().iter().all(|t| t[0].index() == 0));
+        assert!(has_fan);
     }
 
     #[test]

@@ -1,7 +1,11 @@
 //! The last stage: no new fold, no new skinny triangle.
 
+use std::borrow::Cow;
+
 use mesh_core::measure::{triangle_normal, triangle_quality};
-use mesh_core::{Aabb, Positions, Triangulation, TriangulationEdge, Vector3, VertexData, VertexId};
+use mesh_core::{
+    Aabb, Point3, Positions, Triangulation, TriangulationEdge, Vector3, VertexData, VertexId,
+};
 use mesh_loss::LocalShape;
 
 /// An edge is folded when the normals of its triangles have a dot product below this.
@@ -12,8 +16,10 @@ const SKINNY_QUALITY: f64 = 0.1;
 const MAX_RINGS: usize = 8;
 /// Each size of a patch is relaxed at most this often.
 const SWEEPS: usize = 40;
+/// So often a patch that does not mend is flattened before.
+const FLATTENINGS: usize = 30;
 /// A patch is left as it was if mending it would move a vertex farther than this share of the longest side.
-const MAX_MOTION: f64 = 0.03;
+const MAX_MOTION: f64 = 0.05;
 
 /// A result without what the drape broke, as far as that is possible.
 #[derive(Clone, Debug, PartialEq)]
@@ -29,7 +35,8 @@ pub struct Repair {
 /// What is broken in a mesh that was not at rest.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Defects {
-    /// Ends of the edges whose triangles turn against each other, n₁·n₂ < −0.5.
+    /// Ends of the edges whose triangles turn against each other, n₁·n₂ < −0.5, in the given triangulation or in that of
+    /// simple programs ([`Triangulation::simply_cut`]).
     pub folds: Vec<[VertexId; 2]>,
     /// Rows of the triangles with Q_f < 0.1.
     pub skinny: Vec<usize>,
@@ -59,25 +66,17 @@ pub fn repair(
     let mut positions = x.clone();
     let mut broken = judge.broken_vertices(x);
     if !broken.is_empty() {
-        let shape = LocalShape::new(triangulation, rest);
-        let neighbours = triangulation.neighbours(x.len());
+        let mender = Mender {
+            judge: &judge,
+            shape: LocalShape::new(triangulation, rest),
+            neighbours: triangulation.neighbours(x.len()),
+            held,
+            reach: MAX_MOTION * Aabb::of(x).longest_side(),
+        };
         let is_broken = |v: VertexId| broken.binary_search(&v).is_ok();
-        let patches = triangulation.connected_groups(x.len(), is_broken);
-        let reach = MAX_MOTION * Aabb::of(x).longest_side();
-        for patch in patches {
-            let mended = (0..=MAX_RINGS).find_map(|rings| {
-                let mut free = grown(&neighbours, &patch, rings);
-                free.retain(|v| !held.contains(v));
-                let mut candidate = positions.clone();
-                (0..SWEEPS).find_map(|_| {
-                    shape.relax(&mut candidate, &free);
-                    let left = judge.broken_vertices(&candidate);
-                    is_mended(&left, &broken, &patch).then(|| (candidate.clone(), left))
-                })
-            });
-            let is_small = |moved: &Positions| farthest_motion(&positions, moved) <= reach;
-            if let Some((candidate, left)) = mended.filter(|(moved, _)| is_small(moved)) {
-                (positions, broken) = (candidate, left);
+        for patch in triangulation.connected_groups(x.len(), is_broken) {
+            if let Some((mended, left)) = mender.mended(&positions, &patch, &broken) {
+                (positions, broken) = (mended, left);
             }
         }
     }
@@ -85,6 +84,65 @@ pub fn repair(
         left: judge.defects(&positions),
         before,
         positions,
+    }
+}
+
+/// Mends patches, one at a time.
+struct Mender<'a> {
+    judge: &'a Judge<'a>,
+    shape: LocalShape,
+    neighbours: VertexData<Vec<VertexId>>,
+    held: &'a [VertexId],
+    reach: f64,
+}
+
+impl Mender<'_> {
+    /// The positions with `patch` mended, and what of `broken` is left then; none where it does not mend.
+    fn mended(
+        &self,
+        x: &Positions,
+        patch: &[VertexId],
+        broken: &[VertexId],
+    ) -> Option<(Positions, Vec<VertexId>)> {
+        // A patch that turned over as a whole does not come back by itself; it is flattened first.
+        let mut starts = (0..=MAX_RINGS).flat_map(|rings| [(rings, 0), (rings, FLATTENINGS)]);
+        starts.find_map(|(rings, n_flattenings)| {
+            let mut free = self.grown(patch, rings);
+            free.retain(|v| !self.held.contains(v));
+            let mut candidate = x.clone();
+            (0..n_flattenings).for_each(|_| self.flatten(&mut candidate, &free));
+            (0..SWEEPS).find_map(|_| {
+                self.shape.relax(&mut candidate, &free);
+                let left = self.judge.broken_vertices(&candidate);
+                let is_done =
+                    is_mended(&left, broken, patch) && farthest_motion(x, &candidate) <= self.reach;
+                is_done.then(|| (candidate.clone(), left))
+            })
+        })
+    }
+
+    /// Moves each vertex of `free` once, in their order, to the mean of its neighbours.
+    fn flatten(&self, x: &mut Positions, free: &[VertexId]) {
+        for &v in free {
+            let around = &self.neighbours[v];
+            let sum: Vector3 = around.iter().map(|&w| x[w].coords).sum();
+            if !around.is_empty() {
+                x[v] = Point3::from(sum / around.len() as f64);
+            }
+        }
+    }
+
+    /// The vertices within `rings` edges of `patch`, in order.
+    fn grown(&self, patch: &[VertexId], rings: usize) -> Vec<VertexId> {
+        let mut grown = patch.to_vec();
+        for _ in 0..rings {
+            let around = grown.iter().flat_map(|&v| &self.neighbours[v]);
+            let around: Vec<VertexId> = around.copied().collect();
+            grown.extend(around);
+            grown.sort_unstable();
+            grown.dedup();
+        }
+        grown
     }
 }
 
@@ -107,53 +165,72 @@ fn is_mended(left: &[VertexId], broken: &[VertexId], patch: &[VertexId]) -> bool
         .all(|v| !patch.contains(v) && broken.contains(v))
 }
 
-/// Tells what is broken that was not at rest.
+/// Tells what is broken that was not at rest, however the polygons are cut.
 struct Judge<'a> {
-    triangulation: &'a Triangulation,
     rest: &'a Positions,
-    /// Those that are not folded at rest.
+    cuts: Vec<Cut<'a>>,
+}
+
+/// The polygons as triangles, and the edges that are not folded at rest.
+struct Cut<'a> {
+    triangulation: Cow<'a, Triangulation>,
     edges: Vec<TriangulationEdge>,
 }
 
 impl<'a> Judge<'a> {
     fn new(triangulation: &'a Triangulation, rest: &'a Positions) -> Self {
-        let normals = normals(triangulation, rest);
-        let mut edges = triangulation.interior_edges();
-        edges.retain(|e| !is_folded(e, &normals));
+        let simple = triangulation.simply_cut().map(Cow::Owned);
+        let cuts = std::iter::once(Cow::Borrowed(triangulation)).chain(simple);
         Self {
-            triangulation,
             rest,
-            edges,
+            cuts: cuts.map(|triangles| Cut::new(triangles, rest)).collect(),
         }
     }
 
     fn defects(&self, x: &Positions) -> Defects {
+        let edges = self.cuts.iter().flat_map(|cut| cut.folds(x));
+        let mut folds: Vec<[VertexId; 2]> = edges.map(|e| e.vertices).collect();
+        folds.sort_unstable();
+        folds.dedup();
         Defects {
-            folds: self.folds(x).map(|e| e.vertices).collect(),
-            skinny: self.skinny(x),
+            folds,
+            skinny: self.cuts[0].skinny(self.rest, x),
         }
     }
 
     /// Corners of all that is broken, in order.
     fn broken_vertices(&self, x: &Positions) -> Vec<VertexId> {
-        let rows = self
-            .folds(x)
-            .flat_map(|e| e.triangles)
-            .chain(self.skinny(x));
-        let triangles = self.triangulation.triangles();
-        let mut vertices: Vec<VertexId> = rows.flat_map(|t| triangles[t]).collect();
+        let corners = |cut: &Cut<'_>| {
+            let triangles = cut.triangulation.triangles();
+            let folded = cut.folds(x).flat_map(|e| e.triangles);
+            let rows = folded.chain(cut.skinny(self.rest, x));
+            rows.flat_map(|t| triangles[t]).collect::<Vec<VertexId>>()
+        };
+        let mut vertices: Vec<VertexId> = self.cuts.iter().flat_map(corners).collect();
         vertices.sort_unstable();
         vertices.dedup();
         vertices
     }
+}
+
+impl<'a> Cut<'a> {
+    fn new(triangulation: Cow<'a, Triangulation>, rest: &Positions) -> Self {
+        let normals = normals(&triangulation, rest);
+        let mut edges = triangulation.interior_edges();
+        edges.retain(|e| !is_folded(e, &normals));
+        Self {
+            triangulation,
+            edges,
+        }
+    }
 
     fn folds(&self, x: &Positions) -> impl Iterator<Item = &TriangulationEdge> {
-        let normals = normals(self.triangulation, x);
+        let normals = normals(&self.triangulation, x);
         self.edges.iter().filter(move |e| is_folded(e, &normals))
     }
 
-    fn skinny(&self, x: &Positions) -> Vec<usize> {
-        let [before, after] = [self.rest, x].map(|x| self.triangulation.corners(x));
+    fn skinny(&self, rest: &Positions, x: &Positions) -> Vec<usize> {
+        let [before, after] = [rest, x].map(|x| self.triangulation.corners(x));
         let is_skinny = |corners| triangle_quality(corners) < SKINNY_QUALITY;
         before
             .zip(after)
@@ -174,26 +251,6 @@ fn normals(triangulation: &Triangulation, x: &Positions) -> Vec<Vector3> {
 fn is_folded(edge: &TriangulationEdge, normals: &[Vector3]) -> bool {
     let [one, two] = edge.triangles.map(|t| normals[t]);
     one.dot(&two) < FOLD_COSINE
-}
-
-/// The vertices within `rings` edges of `patch`, in order.
-fn grown(
-    neighbours: &VertexData<Vec<VertexId>>,
-    patch: &[VertexId],
-    rings: usize,
-) -> Vec<VertexId> {
-    let mut grown = patch.to_vec();
-    for _ in 0..rings {
-        let around: Vec<VertexId> = grown
-            .iter()
-            .flat_map(|&v| &neighbours[v])
-            .copied()
-            .collect();
-        grown.extend(around);
-        grown.sort_unstable();
-        grown.dedup();
-    }
-    grown
 }
 
 #[cfg(test)]
@@ -234,5 +291,38 @@ mod tests {
         assert!(after < 0.7 * thrown, "{after} of {thrown}");
         let moved = (0..x.len()).filter(|&i| repair.positions.as_slice()[i] != x.as_slice()[i]);
         assert!(moved.count() < x.len() / 2);
+    }
+
+    #[test]
+    fn neighbours_that_changed_places_are_put_back() {
+        let (triangulation, rest) = sphere(48);
+        let mut x = rest.clone();
+        for [v, w] in triangulation.edges().into_iter().step_by(4001) {
+            (x[v], x[w]) = (x[w], x[v]);
+        }
+        let repair = repair(&triangulation, &rest, &x, &[]);
+        assert!(!repair.before.is_empty());
+        assert!(repair.left.is_empty(), "{:?}", repair.left);
+    }
+
+    #[test]
+    fn polygons_that_simple_programs_cut_otherwise_are_judged_twice() {
+        let (mesh, rest) = shapes::open_grid(6, 6).into_halfedge().unwrap();
+        let triangulation = Triangulation::new(&mesh, &rest);
+        assert!(triangulation.simply_cut().is_none());
+        let judge = Judge::new(&triangulation, &rest);
+        assert_eq!(judge.cuts.len(), 1);
+
+        let kites = mesh_core::PolygonSoup {
+            positions: [[0., 0.], [1., 5.], [0., 0.5], [-1., 5.], [0., 9.]]
+                .map(|[x, y]| Point3::new(x, y, 0.0))
+                .to_vec(),
+            faces: vec![vec![0, 1, 2, 3], vec![1, 4, 3, 2]],
+        };
+        let (mesh, rest) = kites.into_halfedge().unwrap();
+        let triangulation = Triangulation::new(&mesh, &rest);
+        let judge = Judge::new(&triangulation, &rest);
+        assert_eq!(judge.cuts.len(), 2);
+        assert!(judge.defects(&rest).is_empty());
     }
 }
