@@ -23,7 +23,7 @@ fn main() -> anyhow::Result<()> {
         mesh: &mesh,
         rest: &rest,
         landmarks: &landmarks,
-        target_bounds: target.bounds(),
+        target_frame: target.principal_frame(),
     };
     let initial = initialize(input, &InitConfig::standard())?.positions;
 

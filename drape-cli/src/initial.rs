@@ -1,6 +1,6 @@
 //! Where a drape starts: the initial deformation, chosen by name.
 
-use mesh_core::{Aabb, Positions};
+use mesh_core::{Positions, UnitFrame};
 use mesh_init::{find_pose, initialize, point_pairs, InitConfig, InitInput, Pose, PoseInput};
 use serde::{Deserialize, Serialize};
 
@@ -53,9 +53,9 @@ pub(crate) fn deform(pair: &Pair, start: Start) -> anyhow::Result<Initial> {
         mesh: &pair.source.mesh,
         rest: &placed,
         landmarks: &pair.landmarks,
-        target_bounds: match &pose {
-            Some(_) => Aabb::of(placed.iter()),
-            None => pair.target.surface.bounds(),
+        target_frame: match &pose {
+            Some(_) => UnitFrame::principal(placed.as_slice()),
+            None => pair.target.surface.principal_frame(),
         },
     };
     let positions = match start {

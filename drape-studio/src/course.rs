@@ -233,7 +233,7 @@ pub(crate) fn adjusted(
         mesh: &scene.source.mesh,
         rest: &scene.source.rest,
         landmarks,
-        target_bounds: scene.target.judged().bounds(),
+        target_frame: scene.target.judged().principal_frame(),
     };
     Ok(mesh_init::adjust(input, present)?)
 }

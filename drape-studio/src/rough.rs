@@ -3,7 +3,7 @@
 //! It is found on one thread, so that it does not wait for others that have much to do.
 
 use mesh_core::{Landmark, Point3, Positions, Vector3};
-use mesh_init::{fit_affine, point_pairs, BoundsPair, SimilarityPrior};
+use mesh_init::{fit_affine, point_pairs, FramePair, SimilarityPrior};
 use mesh_operators::SpaceExtension;
 
 use crate::Scene;
@@ -24,12 +24,12 @@ pub(crate) fn rough(
     let placed = match present {
         Some(present) => present.clone(),
         None => {
-            let bounds = BoundsPair {
-                source: source.bounds(),
-                target: scene.target.judged().bounds(),
+            let frames = FramePair {
+                source: mesh_core::UnitFrame::principal(source.rest.as_slice()),
+                target: scene.target.judged().principal_frame(),
             };
             let pairs = point_pairs(landmarks, &source.rest);
-            let affine = fit_affine(&pairs, bounds, SimilarityPrior::LeaveOneOut);
+            let affine = fit_affine(&pairs, frames, SimilarityPrior::LeaveOneOut);
             source.rest.map(|p| affine.apply(p))
         }
     };

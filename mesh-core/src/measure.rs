@@ -1,5 +1,7 @@
 //! Areas, normals, corner angles, triangle quality, boxes and frames.
 
+use nalgebra::{Matrix3, SymmetricEigen};
+
 use crate::{Point3, Positions, Triangulation, Vector3, VertexData};
 
 /// Twice the area of a triangle times its unit normal: `(b − a) × (c − a)`.
@@ -126,6 +128,36 @@ impl UnitFrame {
                 Point3::origin()
             },
             scale: if side > 0.0 { side } else { 1.0 },
+        }
+    }
+
+    /// The frame of a shape with these points whose box stands along their principal axes: `scale` is its longest side,
+    /// `center` its middle.
+    ///
+    /// It does not depend on how the shape is turned, as the frame of a box along x, y and z does. Only place and size
+    /// change; the axes stay those of the coordinates.
+    pub fn principal(points: &[Point3]) -> Self {
+        let n = points.len().max(1) as f64;
+        let rough = Self::of(Aabb::of(points));
+        let unit = |p: &Point3| rough.to_unit(p).coords;
+        let mean = points.iter().map(unit).sum::<Vector3>() / n;
+        let spread = points
+            .iter()
+            .map(|p| (unit(p) - mean) * (unit(p) - mean).transpose())
+            .sum::<Matrix3<f64>>();
+        let axes = SymmetricEigen::new(spread / n).eigenvectors;
+        let along: Vec<Point3> = points
+            .iter()
+            .map(|p| (axes.transpose() * unit(p)).into())
+            .collect();
+        let bounds = Aabb::of(&along);
+        if bounds.longest_side() > 0.0 {
+            Self {
+                center: rough.from_unit(&(axes * bounds.center().coords).into()),
+                scale: rough.scale * bounds.longest_side(),
+            }
+        } else {
+            rough
         }
     }
 

@@ -6,7 +6,7 @@
 use std::error::Error;
 use std::time::Instant;
 
-use mesh_core::{io, Aabb, Landmark, Point3, VertexId};
+use mesh_core::{io, Landmark, Point3, UnitFrame, VertexId};
 use mesh_init::{initialize, InitConfig, InitInput};
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -28,7 +28,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         mesh: &mesh,
         rest: &rest,
         landmarks: &landmarks,
-        target_bounds: Aabb::of(&io::read_soup(target)?.positions),
+        target_frame: UnitFrame::principal(&io::read_soup(target)?.positions),
     };
     let start = Instant::now();
     let initial = initialize(input, &config)?;

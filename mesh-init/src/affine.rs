@@ -1,6 +1,6 @@
 //! The affine map that brings landmarks to their places, as far as they determine one.
 
-use mesh_core::{Aabb, Point3, Vector3};
+use mesh_core::{Point3, UnitFrame, Vector3};
 use nalgebra::{Matrix3, Rotation3, Unit};
 
 /// Points that spread less than this share of the box along an axis do not determine the map along it.
@@ -19,13 +19,13 @@ pub struct PointPair {
     pub target: Point3,
 }
 
-/// What the pairs and boxes are measured against where pairs are too few.
+/// What lengths are measured in, and what is laid over each other where pairs are too few.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct BoundsPair {
-    /// Box of the source.
-    pub source: Aabb,
-    /// Box of the target.
-    pub target: Aabb,
+pub struct FramePair {
+    /// Frame of the source.
+    pub source: UnitFrame,
+    /// Frame of the target.
+    pub target: UnitFrame,
 }
 
 /// How an affine map is kept near the best similarity (rotation, uniform scale, translation).
@@ -86,8 +86,8 @@ impl AffineFit {
 /// (Umeyama 1991), which never mirrors. `μ` is given by `prior`. In boxes of longest side 1, so units do not
 /// matter. Fewer or degenerate pairs: see [`AffineKind`]. Source: Mesh Draping, Correspondence Setup. Departures: the
 /// prior, and maps for fewer than four landmarks.
-pub fn fit_affine(pairs: &[PointPair], bounds: BoundsPair, prior: SimilarityPrior) -> AffineFit {
-    let frames = Frames::of(bounds);
+pub fn fit_affine(pairs: &[PointPair], frames: FramePair, prior: SimilarityPrior) -> AffineFit {
+    let frames = Frames::of(frames);
     let unit = frames.to_unit(pairs);
     let map = match prior {
         SimilarityPrior::None => UnitMap::fit(&Moments::of(&unit), 0.0),
@@ -109,10 +109,10 @@ pub fn fit_affine(pairs: &[PointPair], bounds: BoundsPair, prior: SimilarityPrio
 /// A pair far above the rest is probably wrong.
 pub fn leave_one_out_residuals(
     pairs: &[PointPair],
-    bounds: BoundsPair,
+    frames: FramePair,
     prior: SimilarityPrior,
 ) -> Vec<f64> {
-    let frames = Frames::of(bounds);
+    let frames = Frames::of(frames);
     let unit = frames.to_unit(pairs);
     let mu = match prior {
         SimilarityPrior::None => 0.0,
@@ -183,8 +183,8 @@ struct Frames {
 }
 
 impl Frames {
-    fn of(bounds: BoundsPair) -> Self {
-        let [source, target] = [bounds.source, bounds.target].map(mesh_core::UnitFrame::of);
+    fn of(frames: FramePair) -> Self {
+        let FramePair { source, target } = frames;
         Self {
             source_center: source.center.coords,
             source_scale: source.scale,

@@ -1,13 +1,13 @@
 //! From landmarks to the shape that draping starts at.
 
 use mesh_core::{
-    Aabb, HalfedgeMesh, Landmark, LandmarkKind, Point3, Positions, Triangulation, UnitFrame,
-    Vector3, VertexData, VertexId,
+    HalfedgeMesh, Landmark, LandmarkKind, Point3, Positions, Triangulation, UnitFrame, Vector3,
+    VertexData, VertexId,
 };
 use mesh_operators::{geodesic_distance_unfolded, SpaceExtension};
 use nalgebra::Matrix3;
 
-use crate::affine::{fit_affine, AffineFit, BoundsPair, PointPair, SimilarityPrior};
+use crate::affine::{fit_affine, AffineFit, FramePair, PointPair, SimilarityPrior};
 use crate::reach::is_reached;
 use crate::{biharmonic_displacement, ArapSolver, InitError, SimilarConfig, SimilarSolver};
 
@@ -26,7 +26,7 @@ pub struct InitInput<'a> {
     /// Places on the source and where they belong.
     pub landmarks: &'a [Landmark],
     /// Box of the target.
-    pub target_bounds: Aabb,
+    pub target_frame: UnitFrame,
 }
 
 /// What happens to vertices far from every landmark.
@@ -107,7 +107,7 @@ pub fn initialize(input: InitInput<'_>, config: &InitConfig) -> Result<Initial, 
     check(&input)?;
     let affine = fit(&input, config.prior);
     let placed = input.rest.map(|p| affine.apply(p));
-    let frame = UnitFrame::of(Aabb::of(placed.iter()));
+    let frame = UnitFrame::principal(placed.as_slice());
     let stage = Stage {
         triangulation: Triangulation::new(input.mesh, input.rest),
         start: placed.map(|p| frame.to_unit(p)),
@@ -134,7 +134,7 @@ pub fn initialize(input: InitInput<'_>, config: &InitConfig) -> Result<Initial, 
 pub fn adjust(input: InitInput<'_>, present: &Positions) -> Result<Positions, InitError> {
     check(&input)?;
     check_length(&input, present)?;
-    let frame = UnitFrame::of(Aabb::of(present));
+    let frame = UnitFrame::principal(present.as_slice());
     let stage = Stage {
         triangulation: Triangulation::new(input.mesh, input.rest),
         start: present.map(|p| frame.to_unit(p)),
@@ -184,11 +184,11 @@ fn check(input: &InitInput<'_>) -> Result<(), InitError> {
 
 /// The affine map of the input's landmarks alone.
 fn fit(input: &InitInput<'_>, prior: SimilarityPrior) -> AffineFit {
-    let bounds = BoundsPair {
-        source: Aabb::of(input.rest.iter()),
-        target: input.target_bounds,
+    let frames = FramePair {
+        source: UnitFrame::principal(input.rest.as_slice()),
+        target: input.target_frame,
     };
-    fit_affine(&point_pairs(input.landmarks, input.rest), bounds, prior)
+    fit_affine(&point_pairs(input.landmarks, input.rest), frames, prior)
 }
 
 /// Where each landmark is on the source and where it belongs: what the affine map is fitted to.

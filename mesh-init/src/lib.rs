@@ -17,7 +17,7 @@
 //! let (mesh, rest) = shapes::quad_sphere(8).into_halfedge()?;
 //! let stretched = rest.map(|p| Point3::new(3.0 * p.x, p.y, p.z));
 //! let landmarks = [0, 8, 40, 100, 200].map(|v| Landmark::new(VertexId::new(v), stretched[VertexId::new(v)]));
-//! let input = InitInput { mesh: &mesh, rest: &rest, landmarks: &landmarks, target_bounds: Aabb::of(stretched.iter()) };
+//! let input = InitInput { mesh: &mesh, rest: &rest, landmarks: &landmarks, target_frame: UnitFrame::principal(stretched.as_slice()) };
 //! let initial = initialize(input, &InitConfig::paper())?;
 //! assert!(initial.positions.iter().zip(&stretched).all(|(p, q)| (p - q).norm() < 1e-6));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
@@ -34,7 +34,7 @@ mod reach;
 mod similar;
 
 pub use affine::{
-    fit_affine, leave_one_out_residuals, AffineFit, AffineKind, BoundsPair, PointPair,
+    fit_affine, leave_one_out_residuals, AffineFit, AffineKind, FramePair, PointPair,
     SimilarityPrior,
 };
 pub use arap::{ArapScratch, ArapSolver};

@@ -1,6 +1,6 @@
 //! Deformation as similar as possible: rotations and scales spread smoothly from the landmarks.
 
-use mesh_core::{Aabb, Point3, Positions, Triangulation, Vector3, VertexData, VertexId};
+use mesh_core::{Point3, Positions, Triangulation, UnitFrame, Vector3, VertexData, VertexId};
 use mesh_operators::{
     cotan_laplacian, multiply, pointwise_laplacian, voronoi_mass, CsrMatrix, FixedSolve,
     FixedSolveScratch, SolveError, SpdSolver,
@@ -79,7 +79,7 @@ impl SimilarSolver {
         config: SimilarConfig,
     ) -> Result<Self, SolveError> {
         let n = rest.len();
-        let size = Aabb::of(rest.iter()).longest_side();
+        let size = UnitFrame::principal(rest.as_slice()).scale;
         let laplacian = cotan_laplacian(triangulation, rest);
         let mass = voronoi_mass(triangulation, rest);
         let cells = Cells::new(triangulation, rest);

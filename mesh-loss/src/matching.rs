@@ -3,8 +3,8 @@
 use mesh_core::measure::{triangle_area, triangle_normal};
 use mesh_core::sampling::{TrianglePlace, TriangleSampler};
 use mesh_core::{
-    Location, NormalSign, Point3, Positions, Profile, SurfaceSample, TargetSurface, TriangleBvh,
-    Triangulation, UnitFrame, Vector3, VertexData, VertexId,
+    is_on_side, Location, NormalSign, Point3, Positions, Profile, SurfaceSample, TargetSurface,
+    TriangleBvh, TriangleFans, Triangulation, UnitFrame, Vector3, VertexData, VertexId, ON_SIDE,
 };
 use rand::RngCore;
 use rayon::prelude::*;
@@ -20,7 +20,8 @@ pub struct SurfaceMatch {
     pub barycentric: [f64; 3],
     /// The matched point of the target.
     pub point: Point3,
-    /// Unit normal of the target there, turned to the mesh's side where its sign means nothing.
+    /// Unit normal of the target there, turned to the mesh's side where its sign means nothing; none where the place is
+    /// the one closest to a target point and on an edge of the mesh, where no triangle is to be turned more than others.
     pub normal: Option<Vector3>,
     /// How much the pair counts, 0..=1.
     pub weight: f64,
@@ -92,6 +93,7 @@ pub struct SurfaceMatcher<'a> {
     target: &'a dyn TargetSurface,
     frame: UnitFrame,
     bvh: TriangleBvh,
+    fans: TriangleFans,
     boundary: Boundary,
     by_face: TriangleSampler,
     hints: Hints,
@@ -111,6 +113,7 @@ impl<'a> SurfaceMatcher<'a> {
             target,
             frame,
             bvh: TriangleBvh::new(triangulation.corners(x).collect()),
+            fans: TriangleFans::new(rows(triangulation)),
             boundary: Boundary::new(triangulation, x.len()),
             by_face: TriangleSampler::new(std::iter::repeat_n(1.0, triangulation.len())),
             hints: Hints::default(),
@@ -177,6 +180,7 @@ impl<'a> SurfaceMatcher<'a> {
             x,
             target: self.target,
             frame: self.frame,
+            fans: &self.fans,
             boundary: &self.boundary,
             config,
         };
@@ -227,6 +231,7 @@ pub(crate) struct Side<'a> {
     pub(crate) x: &'a Positions,
     pub(crate) target: &'a dyn TargetSurface,
     frame: UnitFrame,
+    fans: &'a TriangleFans,
     boundary: &'a Boundary,
     pub(crate) config: &'a SamplingConfig,
 }
@@ -280,16 +285,27 @@ impl Side<'_> {
 
             let t = index as usize;
             let is_on_rim = self.boundary.holds(t, barycentric);
-            let pair = self.pair(t, barycentric, point, &sample.location);
+            let mut pair = self.pair(t, barycentric, point, &sample.location);
+            if is_on_side(&barycentric) {
+                pair.normal = None;
+            }
             (!(is_on_rim && self.config.overlap.target_exceeds))
                 .then_some(SurfaceMatch { is_on_rim, ..pair })
         });
         pairs.collect()
     }
 
+    /// Unit normal of the mesh at a place, a mean where triangles meet.
+    fn own_normal(&self, t: usize, barycentric: &[f64; 3]) -> Option<Vector3> {
+        let triangles = self.triangulation.triangles();
+        let corners = |row: u32| triangles[row as usize].map(|v| self.x[v]);
+        let normal = |row: u32| triangle_normal(corners(row));
+        self.fans
+            .normal(t as u32, barycentric, true, corners, normal)
+    }
+
     fn pair(&self, t: usize, barycentric: [f64; 3], point: Point3, at: &Location) -> SurfaceMatch {
-        let triangle = self.triangulation.triangles()[t];
-        let own = triangle_normal(triangle.map(|v| self.x[v]));
+        let own = self.own_normal(t, &barycentric);
         let mut normal = self.target.normal(at);
         if let (NormalSign::Unoriented, Some(n), Some(m)) =
             (self.target.normal_sign(), normal.as_mut(), own)
@@ -300,7 +316,7 @@ impl Side<'_> {
         }
         let agreement = own.zip(normal).map_or(0.0, |(n, m)| n.dot(&m));
         SurfaceMatch {
-            triangle,
+            triangle: self.triangulation.triangles()[t],
             barycentric,
             point,
             normal,
@@ -313,6 +329,12 @@ impl Side<'_> {
     }
 }
 
+/// The vertices of each triangle, by row.
+fn rows(triangulation: &Triangulation) -> Vec<[u32; 3]> {
+    let of = |t: &[VertexId; 3]| t.map(|v| v.index() as u32);
+    triangulation.triangles().iter().map(of).collect()
+}
+
 /// The open boundary of the mesh.
 struct Boundary {
     triangles: Vec<[VertexId; 3]>,
@@ -320,9 +342,6 @@ struct Boundary {
     /// Whether the side opposite to each corner belongs to no other triangle.
     is_side: Vec<[bool; 3]>,
 }
-
-/// A barycentric weight below this is on the side opposite to its corner.
-const ON_SIDE: f64 = 1e-9;
 
 impl Boundary {
     fn new(triangulation: &Triangulation, n_vertices: usize) -> Self {

@@ -2,7 +2,7 @@
 
 use faer::linalg::solvers::{PartialPivLu, Solve};
 use faer::Mat;
-use mesh_core::{Aabb, Point3, UnitFrame, Vector3};
+use mesh_core::{Point3, UnitFrame, Vector3};
 use nalgebra::Matrix3;
 
 use crate::SolveError;
@@ -61,7 +61,7 @@ impl SpaceExtension {
             displacements.len(),
             "one displacement for each point"
         );
-        let frame = UnitFrame::of(Aabb::of(points));
+        let frame = UnitFrame::principal(points);
         let chosen = farthest_points(points, max_centres, MIN_SPACING * frame.scale);
         let centres: Vec<Vector3> = chosen
             .iter()

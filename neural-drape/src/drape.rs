@@ -78,7 +78,7 @@ impl<'a> Drape<'a> {
     pub fn new(input: DrapeInput<'a>, config: DrapeConfig) -> Result<Self, DrapeError> {
         check(&input)?;
         config.check()?;
-        let frame = UnitFrame::of(input.target.bounds());
+        let frame = input.target.principal_frame();
         let initial = input.initial.map(|p| frame.to_unit(p));
         let parametrization: Box<dyn Parametrization> = match &config.parametrization {
             ParametrizationConfig::Network(network) => {

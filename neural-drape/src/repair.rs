@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use mesh_core::measure::{triangle_normal, triangle_quality};
 use mesh_core::{
-    Aabb, Point3, Positions, Triangulation, TriangulationEdge, Vector3, VertexData, VertexId,
+    Point3, Positions, Triangulation, TriangulationEdge, UnitFrame, Vector3, VertexData, VertexId,
 };
 use mesh_loss::LocalShape;
 
@@ -71,7 +71,7 @@ pub fn repair(
             shape: LocalShape::new(triangulation, rest),
             neighbours: triangulation.neighbours(x.len()),
             held,
-            reach: MAX_MOTION * Aabb::of(x).longest_side(),
+            reach: MAX_MOTION * UnitFrame::principal(x.as_slice()).scale,
         };
         let is_broken = |v: VertexId| broken.binary_search(&v).is_ok();
         for patch in triangulation.connected_groups(x.len(), is_broken) {

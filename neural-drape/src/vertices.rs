@@ -149,7 +149,8 @@ impl Parametrization for Vertices {
         let adam = &self.adam;
         state.count(adam.n_steps as usize);
         state.real(adam.adaptivity);
-        state.vectors(adam.mean.iter().chain(&adam.mean_square));
+        state.vectors(&adam.mean);
+        adam.mean_square.iter().for_each(|&v| state.real(v));
     }
 
     fn restore(&mut self, state: &mut StateReader<'_>) -> Result<(), DrapeError> {
@@ -160,20 +161,25 @@ impl Parametrization for Vertices {
         let adam = &mut self.adam;
         adam.n_steps = state.count()?.try_into().unwrap_or(i32::MAX);
         adam.adaptivity = state.real()?;
-        state.vectors(adam.mean.iter_mut().chain(&mut adam.mean_square))
+        state.vectors(&mut adam.mean)?;
+        for v in &mut adam.mean_square {
+            *v = state.real()?;
+        }
+        Ok(())
     }
 }
 
 /// Adam with one scale for all coordinates: the step keeps the direction that the preconditioner gave it, and noise
 /// is not blown up where the fit is good.
 ///
-/// `Δu = η m / √(v_max^(1−p) vᵢ^p)`, with the running means m of the gradient and v of its square and the adaptivity p
+/// `Δu = η m / √(v_max^(1−p) vᵢ^p)`, with the running means m of a vertex's gradient and v of its squared length and the adaptivity p
 ///
 /// Source: "UniformAdam" of Nicolet et al. 2021, after Kingma and Ba 2015. Departures: the largest running mean square
-/// is taken, not the running mean of the largest square; the adaptivity (0 there).
+/// is taken, not the running mean of the largest square; lengths instead of coordinates, so that axes do not matter; the
+/// adaptivity (0 there).
 struct UniformAdam {
     mean: Vec<Vector3>,
-    mean_square: Vec<Vector3>,
+    mean_square: Vec<f64>,
     betas: [f64; 2],
     n_steps: i32,
     adaptivity: f64,
@@ -188,7 +194,7 @@ impl UniformAdam {
     fn new(n: usize, config: &VerticesConfig) -> Self {
         Self {
             mean: vec![Vector3::zeros(); n],
-            mean_square: vec![Vector3::zeros(); n],
+            mean_square: vec![0.0; n],
             betas: config.betas,
             n_steps: 0,
             adaptivity: 0.0,
@@ -207,14 +213,14 @@ impl UniformAdam {
             .zip(&mut self.mean_square)
         {
             *m = *m * b1 + *g * (1.0 - b1);
-            *v = *v * b2 + g.component_mul(g) * (1.0 - b2);
-            largest = largest.max(v.max());
+            *v = *v * b2 + g.norm_squared() * (1.0 - b2);
+            largest = largest.max(*v);
         }
         let scale = learning_rate / (c1 * ((largest / c2).sqrt() + EPSILON));
         let floor = largest * SMALLEST_SQUARE;
         for ((g, m), v) in gradient.iter_mut().zip(&self.mean).zip(&self.mean_square) {
             let own = if self.adaptivity > 0.0 && largest > 0.0 {
-                (largest / (v.mean().max(floor))).powf(0.5 * self.adaptivity)
+                (largest / v.max(floor)).powf(0.5 * self.adaptivity)
             } else {
                 1.0
             };

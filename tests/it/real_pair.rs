@@ -2,6 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
+use mesh_core::{io, Point3, Vector3};
+use nalgebra::Rotation3;
+
 use crate::support::{run, Workplace};
 
 /// The pairs, or nothing where they are not on this machine.
@@ -60,3 +63,52 @@ fn a_horse_becomes_a_wolf_and_keeps_its_file() {
     };
     assert_eq!(kept(text(&source)), kept(text(&output)));
 }
+
+/// Both files turned, scaled and moved, each in its own way: the result is that of the files as they are.
+#[test]
+fn units_place_and_turn_of_the_files_do_not_matter() {
+    let Some(pair) = data() else {
+        return;
+    };
+    let place = Workplace::new();
+    place.write(
+        "short.toml",
+        "[[stages]]\nn_iterations = 60\n[[stages]]\nn_iterations = 30\n",
+    );
+    let drape = |folder: &str, of_source: &Map<'_>, of_target: &Map<'_>| {
+        std::fs::create_dir(place.path(folder)).expect("a folder");
+        for (name, map) in [("source.obj", of_source), ("target.obj", of_target)] {
+            let mut soup = io::read_soup(pair.join(name)).expect("a mesh");
+            soup.positions.iter_mut().for_each(|p| *p = map(p));
+            io::write_soup(place.path(folder).join(name), &soup).expect("it is written");
+        }
+        let text = std::fs::read_to_string(pair.join("landmarks.json")).expect("a file");
+        let mut landmarks: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+        for point in landmarks["target_points"].as_array_mut().expect("points") {
+            let [x, y, z] = [0, 1, 2].map(|k| point[k].as_f64().expect("a number"));
+            let moved = of_target(&Point3::new(x, y, z));
+            *point = serde_json::json!([moved.x, moved.y, moved.z]);
+        }
+        place.write(&format!("{folder}/landmarks.json"), &landmarks.to_string());
+        place
+            .drape(&format!(
+                "transfer {folder}/source.obj {folder}/target.obj -l {folder}/landmarks.json --config short.toml -o {folder}/out.obj"
+            ))
+            .well();
+        io::read_soup(place.path(&format!("{folder}/out.obj")))
+            .expect("a mesh")
+            .positions
+    };
+    let turn = Rotation3::from_euler_angles(0.7, -1.1, 2.3);
+    let far = |p: &Point3| turn * p * 1000.0 + Vector3::new(1e4, -1e4, 1e4);
+    let small = |p: &Point3| Point3::from(turn.inverse() * p.coords * 0.001);
+    let here = drape("here", &|p| *p, &|p| *p);
+    let there = drape("there", &small, &far);
+
+    let side = 1000.0 * mesh_core::Aabb::of(&here).longest_side();
+    let shifts = here.iter().zip(&there).map(|(a, b)| (far(a) - b).norm());
+    let worst = shifts.fold(0.0, f64::max) / side;
+    assert!(worst < 1e-3, "{worst} of the longest side");
+}
+
+type Map<'a> = dyn Fn(&Point3) -> Point3 + 'a;

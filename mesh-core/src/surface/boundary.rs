@@ -3,9 +3,7 @@
 use std::collections::HashSet;
 
 use super::weld::Weld;
-
-/// Weights below this count as zero: the place is on a side.
-const ON_SIDE: f64 = 1e-9;
+use crate::ON_SIDE;
 
 /// Which sides and corners of each triangle lie on a boundary: bit `k` is the side opposite corner `k`, bit `3 + k`
 /// the corner itself.

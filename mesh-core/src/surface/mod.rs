@@ -20,7 +20,7 @@ pub use triangle_soup::TriangleSoup;
 use rand::RngCore;
 use rayon::prelude::*;
 
-use crate::{Aabb, Point3, Vector3};
+use crate::{Aabb, Point3, UnitFrame, Vector3};
 
 /// A place on a target surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -114,4 +114,10 @@ pub trait TargetSurface: Send + Sync {
 
     /// The smallest box around the surface.
     fn bounds(&self) -> Aabb;
+
+    /// The frame of the surface along its principal axes: what deformations measure lengths in, so that they do not
+    /// depend on how the surface is turned.
+    fn principal_frame(&self) -> UnitFrame {
+        UnitFrame::principal(&self.vertices())
+    }
 }

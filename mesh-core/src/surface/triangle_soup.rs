@@ -10,12 +10,15 @@ use super::weld::Weld;
 use super::{Location, NormalSign, SurfacePoint, SurfaceSample, TargetSurface};
 use crate::measure::{triangle_area, triangle_normal};
 use crate::sampling::TriangleSampler;
-use crate::{Aabb, Point3, PolygonSoup, TopologyError, TriangleBvh, Triangulation, Vector3};
+use crate::{
+    Aabb, Point3, PolygonSoup, TopologyError, TriangleBvh, TriangleFans, Triangulation, Vector3,
+};
 
 /// A target made of triangles, of which nothing is expected but finite corners.
 ///
 /// Polygons are split as by [`Triangulation`]; a [`Location`] names rows of these triangles. Normals are those of the
-/// triangles, turned outwards as far as the shape tells (see [`TargetSurface::normal_sign`]).
+/// triangles, means on edges and corners, turned outwards as far as the shape tells (see
+/// [`TargetSurface::normal_sign`]).
 ///
 /// ```
 /// use mesh_core::{shapes, Point3, TargetSurface, TriangleSoup};
@@ -28,6 +31,7 @@ use crate::{Aabb, Point3, PolygonSoup, TopologyError, TriangleBvh, Triangulation
 pub struct TriangleSoup {
     bvh: TriangleBvh,
     boundary: Boundary,
+    fans: TriangleFans,
     orientation: Orientation,
     vertices: Vec<Point3>,
     area: f64,
@@ -57,9 +61,20 @@ impl TriangleSoup {
                 .used_vertices()
                 .map(|v| positions[v as usize])
                 .collect(),
+            fans: TriangleFans::new(weld.triangles),
             area,
             sampler,
             bvh,
+        })
+    }
+
+    /// Normal of a triangle, turned outwards as far as the shape tells.
+    fn triangle_normal(&self, row: u32) -> Option<Vector3> {
+        let normal = triangle_normal(self.bvh.triangle(row))?;
+        Some(if self.orientation.is_flipped[row as usize] {
+            -normal
+        } else {
+            normal
         })
     }
 
@@ -135,15 +150,16 @@ impl TargetSurface for TriangleSoup {
     }
 
     fn normal(&self, location: &Location) -> Option<Vector3> {
-        let Location::Triangle { index, .. } = *location else {
+        let Location::Triangle { index, barycentric } = location else {
             return None;
         };
-        let normal = triangle_normal(self.bvh.triangle(index))?;
-        Some(if self.orientation.is_flipped[index as usize] {
-            -normal
-        } else {
-            normal
-        })
+        self.fans.normal(
+            *index,
+            barycentric,
+            self.orientation.sign == NormalSign::Oriented,
+            |row| self.bvh.triangle(row),
+            |row| self.triangle_normal(row),
+        )
     }
 
     fn normal_sign(&self) -> NormalSign {

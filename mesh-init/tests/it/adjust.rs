@@ -1,6 +1,6 @@
 //! A result deformed further by landmarks that are added to it.
 
-use mesh_core::{Aabb, Landmark, Vector3, VertexId};
+use mesh_core::{Landmark, UnitFrame, Vector3, VertexId};
 use mesh_init::{adjust, InitError, InitInput};
 
 use crate::shapes::{self as all_shapes, Shape};
@@ -10,7 +10,7 @@ fn input<'a>(s: &'a Shape, landmarks: &'a [Landmark]) -> InitInput<'a> {
         mesh: &s.mesh,
         rest: &s.rest,
         landmarks,
-        target_bounds: Aabb::of(s.rest.iter()),
+        target_frame: UnitFrame::principal(s.rest.as_slice()),
     }
 }
 

@@ -1,6 +1,6 @@
-use mesh_core::{Aabb, Point3, Vector3};
+use mesh_core::{Aabb, Point3, UnitFrame, Vector3};
 use mesh_init::{
-    fit_affine, leave_one_out_residuals, AffineKind, BoundsPair, PointPair, SimilarityPrior,
+    fit_affine, leave_one_out_residuals, AffineKind, FramePair, PointPair, SimilarityPrior,
 };
 use nalgebra::{Matrix3, Rotation3};
 use proptest::prelude::*;
@@ -15,10 +15,10 @@ fn pairs(sources: &[[f64; 3]], map: impl Fn(&Point3) -> Point3) -> Vec<PointPair
     sources.iter().map(pair).collect()
 }
 
-fn bounds(pairs: &[PointPair]) -> BoundsPair {
-    BoundsPair {
-        source: Aabb::of(pairs.iter().map(|p| &p.source)),
-        target: Aabb::of(pairs.iter().map(|p| &p.target)),
+fn frames(pairs: &[PointPair]) -> FramePair {
+    FramePair {
+        source: UnitFrame::of(Aabb::of(pairs.iter().map(|p| &p.source))),
+        target: UnitFrame::of(Aabb::of(pairs.iter().map(|p| &p.target))),
     }
 }
 
@@ -41,7 +41,7 @@ proptest! {
         let map = |p: &Point3| Point3::from(linear * p.coords + Vector3::new(shift, -shift, 1.0));
         let pairs = pairs(&CORNERS, map);
         for prior in PRIORS {
-            let fit = fit_affine(&pairs, bounds(&pairs), prior);
+            let fit = fit_affine(&pairs, frames(&pairs), prior);
             prop_assert_eq!(fit.kind, AffineKind::Affine);
             // 1e4 away from the origin, coordinates hold 1e-12 of a unit; the map multiplies that by its condition.
             prop_assert!((fit.matrix - linear).norm() < 1e-8 * (scale + 1e-3), "{} {}", fit.matrix, linear);
@@ -61,7 +61,7 @@ fn fewer_landmarks_determine_less() {
         AffineKind::Similarity,
         AffineKind::Affine,
     ];
-    let whole = bounds(&pairs(&CORNERS, map));
+    let whole = frames(&pairs(&CORNERS, map));
     for prior in PRIORS {
         for (n, kind) in kinds.into_iter().enumerate() {
             let pairs = pairs(&CORNERS[..n], map);
@@ -82,18 +82,18 @@ fn fewer_landmarks_determine_less() {
 
 #[test]
 fn without_a_landmark_the_boxes_match() {
-    let bounds = BoundsPair {
-        source: Aabb {
+    let frames = FramePair {
+        source: UnitFrame::of(Aabb {
             min: Point3::new(0., 0., 0.),
             max: Point3::new(2., 1., 1.),
-        },
-        target: Aabb {
+        }),
+        target: UnitFrame::of(Aabb {
             min: Point3::new(10., 10., 10.),
             max: Point3::new(11., 14., 12.),
-        },
+        }),
     };
-    let fit = fit_affine(&[], bounds, SimilarityPrior::None);
-    assert_eq!(fit.apply(&bounds.source.center()), bounds.target.center());
+    let fit = fit_affine(&[], frames, SimilarityPrior::None);
+    assert_eq!(fit.apply(&frames.source.center), frames.target.center);
     assert_eq!(fit.matrix, Matrix3::identity() * 2.0);
 }
 
@@ -116,7 +116,7 @@ fn landmarks_in_a_plane_stay_a_similarity_with_noise_across_it() {
         )
     };
     let pairs = pairs(&flat, noise);
-    let fit = fit_affine(&pairs, bounds(&pairs), SimilarityPrior::LeaveOneOut);
+    let fit = fit_affine(&pairs, frames(&pairs), SimilarityPrior::LeaveOneOut);
     let stretch = fit.matrix.singular_values();
     assert!(stretch.min() > 0.7 && stretch.max() < 1.4, "{stretch}");
     assert!(!fit.is_mirroring());
@@ -125,13 +125,13 @@ fn landmarks_in_a_plane_stay_a_similarity_with_noise_across_it() {
 #[test]
 fn a_mirrored_map_says_so_unless_held_to_a_similarity() {
     let mirrored = pairs(&CORNERS, |p| Point3::new(-p.x, p.y, p.z));
-    assert!(fit_affine(&mirrored, bounds(&mirrored), SimilarityPrior::None).is_mirroring());
+    assert!(fit_affine(&mirrored, frames(&mirrored), SimilarityPrior::None).is_mirroring());
 }
 
 #[test]
 fn coincident_landmarks_neither_collapse_nor_blow_up_the_map() {
     let same_target = pairs(&CORNERS, |_| Point3::new(1.0, 2.0, 3.0));
-    let boxes = bounds(&pairs(&CORNERS, |p| p * 2.0));
+    let boxes = frames(&pairs(&CORNERS, |p| p * 2.0));
     let fit = fit_affine(&same_target, boxes, SimilarityPrior::None);
     assert_eq!(
         (fit.kind, fit.matrix),
@@ -149,7 +149,7 @@ fn a_reversed_line_turns_by_half() {
     let reversed = pairs(&[[0., 0., 0.], [2., 0., 0.]], |p| {
         Point3::new(-p.x, p.y, p.z)
     });
-    let fit = fit_affine(&reversed, bounds(&reversed), SimilarityPrior::None);
+    let fit = fit_affine(&reversed, frames(&reversed), SimilarityPrior::None);
     assert!(fit.residuals.iter().all(|r| *r < 1e-12));
     assert!((fit.matrix.determinant() - 1.0).abs() < 1e-12);
 }
@@ -162,9 +162,9 @@ fn the_wrong_landmark_stands_out_when_left_out() {
     let mut wrong = pairs(&grid, |p| p * 2.0);
     wrong[4].target.x += 1.5;
     for prior in PRIORS {
-        let residuals = leave_one_out_residuals(&wrong, bounds(&wrong), prior);
+        let residuals = leave_one_out_residuals(&wrong, frames(&wrong), prior);
         let worst = (0..residuals.len()).max_by(|&a, &b| residuals[a].total_cmp(&residuals[b]));
         assert_eq!(worst, Some(4), "{residuals:?}");
     }
-    assert!(leave_one_out_residuals(&[], bounds(&wrong), SimilarityPrior::LeaveOneOut).is_empty());
+    assert!(leave_one_out_residuals(&[], frames(&wrong), SimilarityPrior::LeaveOneOut).is_empty());
 }

@@ -1,5 +1,5 @@
 use mesh_core::{
-    shapes, Aabb, Landmark, LandmarkKind, MeshPoint, Point3, PolygonSoup, Positions, Vector3,
+    shapes, Landmark, LandmarkKind, MeshPoint, Point3, PolygonSoup, Positions, UnitFrame, Vector3,
     VertexId,
 };
 use mesh_init::{initialize, AffineKind, InitConfig, InitError, InitInput, Initial};
@@ -21,7 +21,7 @@ fn run(
         mesh: &s.mesh,
         rest: &s.rest,
         landmarks,
-        target_bounds: Aabb::of(goal.iter()),
+        target_frame: UnitFrame::principal(goal.as_slice()),
     };
     initialize(input, config)
 }
