@@ -160,6 +160,7 @@ impl Toolbox for CommandLine {
             .enumerate()
             .map(|(row, part)| InnerPart {
                 name: format!("hidden:{}", row + 1),
+                label: format!("{}, {:.1} %", part.kind_in_short(), 100.0 * part.share),
                 about: format!(
                     "{}, {} vertices, {:.1} % of the area",
                     part.kind(),

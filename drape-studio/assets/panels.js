@@ -102,13 +102,16 @@ export class Panels {
     $("drape").hidden = isBusy || (hasRun && !isOver && run.status !== "stopped");
     $("drape").disabled = !isReady;
     $("drape").textContent = hasRun ? "Drape again" : "Drape";
+    $("drape").classList.toggle("main", !hasRun || !run.pending);
     $("pause").hidden = !isBusy;
     $("resume").hidden = !hasRun || isBusy || run.status === "failed" || (run.status === "finished" && !run.pending);
     $("resume").textContent = !run.pending ? "Resume" : run.pending_parts ? "Resume with the changes" : "Resume with the new landmarks";
-    $("extend").hidden = !["finished", "stopped"].includes(run.status);
+    $("extend").hidden = !["finished", "stopped"].includes(run.status) || run.pending;
     $("extend").textContent = `${run.n_more} more iterations`;
     $("step").disabled = !isReady || isBusy || (run.status === "finished" && !run.pending) || run.status === "failed";
+    $("step").hidden = isOver && !run.pending;
     $("stop").disabled = !isBusy && run.status !== "paused";
+    $("stop").hidden = isOver;
     $("reset").disabled = !hasRun;
     for (const what of ["result", "warp", "landmarks", "report"]) {
       const link = $(`export-${what}`);
@@ -207,8 +210,8 @@ export class Panels {
     const parts = [words[run.status]];
     if (run.status !== "none" && n > 0) parts.push(`iteration ${iteration} of ${n}`);
     if (run.status === "running" && left > 0) parts.push(`${time(left)} left`);
-    if (run.pending && run.status !== "running") parts.push(run.pending_landmarks ? "landmarks changed: the result shows how it would go on" : "parts changed: this holds once it goes on");
-    $("status").textContent = run.error ? sentence(run.error) : parts.join(" · ");
+    if (run.pending && run.status !== "running") parts.push(run.pending_landmarks ? "landmarks changed" : "parts changed");
+    $("status").textContent = $("status").title = run.error ? sentence(run.error) : parts.join(" · ");
     $("status").classList.toggle("is-bad", Boolean(run.error));
   }
 

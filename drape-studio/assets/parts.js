@@ -21,7 +21,7 @@ export class Parts {
     const key = JSON.stringify([names, inner]);
     if (this.key !== key) {
       this.key = key;
-      this.rows = new Map(names.map((name) => [name, this.addRow(name, name)]));
+      this.rows = new Map(names.map((name) => [name, this.addRow(name, name, name)]));
       inner.forEach((part) => this.rows.set(part.name, this.addInner(part)));
       const items = (some) => some.map((name) => this.rows.get(name).item);
       $("parts").replaceChildren(...items(names));
@@ -37,16 +37,16 @@ export class Parts {
     }
   }
 
-  showRow({ select, button, note, proposed }, way, isAsked) {
+  showRow({ select, button, proposed, unasked }, way, isAsked) {
     select.value = way;
     if (!button) return;
     button.hidden = way === proposed;
-    note.textContent = isAsked ? "" : way === "draped" ? "the target has some, too" : "by itself";
+    for (const option of select.options) option.textContent = !isAsked && option.value === unasked ? `${unasked} (auto)` : option.value;
   }
 
-  addRow(name, text) {
+  addRow(name, text, title) {
     const [item, label, select] = ["li", "span", "select"].map((tag) => document.createElement(tag));
-    label.textContent = label.title = text;
+    [label.textContent, label.title] = [text, title];
     for (const way of WAYS) select.append(new Option(way, way));
     select.setAttribute("aria-label", `How ${name} is draped`);
     select.title = TITLE;
@@ -58,16 +58,14 @@ export class Parts {
   }
 
   // An inner piece has a button for what is proposed.
-  addInner({ name, about, proposed }) {
-    const row = this.addRow(name, about);
-    const [note, button] = ["i", "button"].map((tag) => document.createElement(tag));
-    note.className = "soft";
-    note.title = "As long as nobody says otherwise";
+  addInner({ name, label, about, proposed, unasked }) {
+    const row = this.addRow(name, label, about);
+    const button = document.createElement("button");
     button.textContent = `Make ${proposed}`;
     button.setAttribute("aria-label", `Make ${name} ${proposed}`);
     button.addEventListener("click", () => this.treat(name, proposed));
-    row.select.before(note, button);
-    return { ...row, button, note, proposed };
+    row.select.before(button);
+    return { ...row, button, proposed, unasked };
   }
 
   async treat(name, treatment) {

@@ -39,6 +39,7 @@ export class Stage {
       app.cameras.frame(view);
       if (side === "source") app.parts.colour();
       this.takeFrame();
+      app.words.nameViews();
       app.painter.invalidate();
     } catch (error) {
       this.hashes[side] = undefined;

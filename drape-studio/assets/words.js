@@ -69,7 +69,7 @@ export class Words {
     result.badge.textContent = status === "running" ? "live" : "paused";
     this.invite(source, !state?.source, "The mesh you like", "Drop it here: its quads, UVs and groups survive.", "source");
     this.invite(target, !state?.target, "The shape you want", "Drop a mesh, a raw scan or a point cloud here.", "target");
-    this.invite(result, !(state?.source && state?.target), "The result", "The source in the target's shape will show here, from the first landmark on.", null);
+    this.invite(result, !(state?.source && state?.target), "The result", "The source in the target's shape shows here, as soon as both are open.", null);
   }
 
   // What an empty view is for.

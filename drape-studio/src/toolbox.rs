@@ -58,7 +58,9 @@ pub enum Treatment {
 pub struct InnerPart {
     /// Its name in [`Parts`].
     pub name: String,
-    /// What it is, in words.
+    /// What it is, in few words.
+    pub label: String,
+    /// What it is, in more words.
     pub about: String,
     /// Its vertices.
     pub vertices: Vec<VertexId>,

@@ -50,6 +50,14 @@ impl Inner {
         }
     }
 
+    pub(crate) fn kind_in_short(&self) -> &'static str {
+        match (self.is_piece, self.is_closed) {
+            (true, true) => "closed",
+            (true, false) => "open",
+            (false, _) => "lining",
+        }
+    }
+
     /// Whether it is treated as proposed where nobody says otherwise and the target has nothing like it.
     fn is_clear(&self) -> bool {
         self.is_piece || self.share >= LINING_SHARE

@@ -75,6 +75,7 @@ impl Desk {
         let part = |part: &InnerPart| {
             json!({
                 "name": part.name,
+                "label": part.label,
                 "about": part.about,
                 "proposed": part.proposed,
                 "unasked": part.unasked,

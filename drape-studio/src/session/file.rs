@@ -8,9 +8,11 @@ use mesh_core::io::write_atomic;
 use serde::{Deserialize, Serialize};
 
 use super::mark::Mark;
-use super::Session;
+use super::{Change, Session};
 
 pub(super) const VERSION: u32 = 1;
+/// No drape gets more iterations at once.
+const MAX_MORE_ITERATIONS: usize = 1_000_000_000;
 
 /// An input file and what it held when it was opened.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -82,6 +84,11 @@ impl Session {
             mirrors.into_iter().all(|axis| axis < 3),
             "names an axis that is none"
         );
+        let events = self.run.iter().flat_map(|run| &run.events);
+        for event in events {
+            let is_long = matches!(event.change, Change::Extended(n) if n > MAX_MORE_ITERATIONS);
+            ensure!(!is_long, "gives a drape more iterations than it can do");
+        }
         for mark in documents.map(|d| &d.marks).chain(runs).flatten() {
             ensure!(
                 is_finite(mark),
@@ -130,7 +137,7 @@ fn is_finite(mark: &Mark) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Change, Event, MarkKind, RunLog, SourcePlace};
+    use super::super::{Event, MarkKind, RunLog, SourcePlace};
     use super::*;
     use crate::Parts;
 
@@ -201,6 +208,7 @@ mod tests {
             "[1]",
             &good.replace("\"version\":1", "\"version\":2"),
             &good.replace("\"marks\"", "\"spots\""),
+            &good.replace("\"extended\":500", "\"extended\":5000000000"),
             &good.replace("\"mirror\":null", "\"mirror\":[0,3]"),
             &good[..good.len() / 2],
         ] {

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use super::browser::{browser, Page};
 use super::page::probed;
 use super::server::{horse_wolf, Server};
+use crate::regions::{head_on_skin, HEAD, SKIN};
 
 #[test]
 fn every_state_can_be_drawn() {
@@ -28,6 +29,7 @@ fn every_state_can_be_drawn() {
     page.press("#help");
     save(&page, "keys");
     empty.kill();
+    save_parts(&page, &save);
 
     let [source, target, landmarks] = ["source.obj", "target.obj", "landmarks.json"]
         .map(|name| pair.join(name).display().to_string());
@@ -69,6 +71,20 @@ fn every_state_can_be_drawn() {
     server.kill();
     page.wait("!document.getElementById('offline').hidden");
     save(&page, "offline");
+}
+
+/// A part that is pointed out, and what is proposed for inner pieces.
+fn save_parts(page: &Page, save: &dyn Fn(&Page, &str)) {
+    let place = head_on_skin();
+    let arguments = [HEAD, SKIN, "--landmarks", "head.json"];
+    let server = Server::start(&place.path(""), &arguments);
+    page.go(&server.url);
+    page.wait("studio.views.result.shape && studio.figures && studio.state.inner.length > 0");
+    page.value("studio.parts.pointOut('hidden:1')");
+    page.wait("studio.parts.pointedRanges.length > 0");
+    probed(page);
+    save(page, "parts");
+    server.kill();
 }
 
 /// Heat maps, the target over the result, light and dark, a small and a large page.
