@@ -30,7 +30,11 @@ pub(crate) struct Source {
 impl Source {
     pub(crate) fn new(soup: PolygonSoup, seams: Seams) -> anyhow::Result<Self> {
         soup.check()?;
-        let weld = seams.weld(soup);
+        Self::of_weld(seams.weld(soup))
+    }
+
+    /// Of vertices whose seams are closed.
+    pub(crate) fn of_weld(weld: Weld) -> anyhow::Result<Self> {
         let (mesh, rest) = weld.soup.clone().into_halfedge()?;
         let triangulation = Triangulation::new(&mesh, &rest);
         ensure!(

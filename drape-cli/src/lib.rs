@@ -10,6 +10,7 @@
 
 mod commands;
 mod demo;
+mod draping;
 mod explain;
 mod gallery;
 mod initial;
@@ -28,6 +29,7 @@ mod run;
 mod seams;
 mod settings;
 mod similarity;
+mod stand_in;
 mod suite;
 mod toolbox;
 mod usage;

@@ -35,6 +35,18 @@ impl Stages {
         self.wall.time(name, || self.cpu.time(name, work))
     }
 
+    /// Does the work of a stage whose parts are told.
+    pub(crate) fn time_with_parts<R>(
+        &mut self,
+        name: &'static str,
+        work: impl FnOnce(&mut Profile) -> R,
+    ) -> R {
+        let mut parts = self.parts.fresh();
+        let done = self.time(name, || work(&mut parts));
+        self.parts.extend(&parts);
+        done
+    }
+
     /// Seconds on the clock by stage.
     pub(crate) fn seconds(&self) -> Vec<(&'static str, f64)> {
         let spans = self.wall.spans().iter();
@@ -51,10 +63,13 @@ impl Stages {
             let [w, c] = [wall, cpu].map(|s| s.total.as_secs_f64());
             // Writing into a string cannot fail.
             let _ = writeln!(table, "{:<28}{w:>9.3}{c:>9.3}", wall.name);
-            if wall.name == DRAPING {
-                table += &self.parts_table(cpu.total);
-            }
         }
+        let drapes = self
+            .cpu
+            .spans()
+            .iter()
+            .filter(|s| s.name.starts_with(DRAPING));
+        table += &self.parts_table(drapes.map(|s| s.total).sum());
         let _ = writeln!(table, "all: {usage}");
         table
     }
@@ -97,7 +112,7 @@ impl Stages {
     }
 }
 
-/// The stage whose parts are told one by one.
+/// The stage whose parts are told one by one; the refinement of a dense source is another by this name.
 pub(crate) const DRAPING: &str = "drape";
 
 /// What asks for a profile.

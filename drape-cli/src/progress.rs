@@ -14,6 +14,10 @@ pub(crate) struct Progress {
     shown: Shown,
     start: Instant,
     history: History,
+    n_iterations: usize,
+    /// Iterations of earlier runs, and how many there were so far.
+    n_before: usize,
+    n_shown: usize,
 }
 
 enum Shown {
@@ -71,10 +75,24 @@ impl Progress {
             shown,
             start: Instant::now(),
             history: History::default(),
+            n_iterations,
+            n_before: 0,
+            n_shown: 0,
         }
     }
 
+    /// What comes is another run, shown as the continuation.
+    pub(crate) fn go_on(&mut self) {
+        self.n_before = self.n_shown;
+    }
+
     pub(crate) fn show(&mut self, step: &StepReport) {
+        let step = &StepReport {
+            iteration: self.n_before + step.iteration,
+            n_iterations: self.n_iterations,
+            ..step.clone()
+        };
+        self.n_shown = step.iteration + 1;
         self.history.record(step);
         match &self.shown {
             Shown::Bar(bar) => {

@@ -1,17 +1,18 @@
 //! One drape from files in memory to figures: the initial deformation, the optimisation, the judge.
 
-use mesh_core::{Positions, Profile, UnitFrame, VertexData};
-use mesh_loss::Overlap;
+use mesh_core::{Positions, UnitFrame, VertexData};
 use mesh_metrics::{EvaluationConfig, EvaluationInput, Report};
 use neural_drape::network::NetworkMap;
-use neural_drape::{Defects, Drape, DrapeInput, Regions, Repair, Warp, WarpInput};
+use neural_drape::{Regions, Warp, WarpInput};
 
+use crate::draping::{drape, Draped, Task};
 use crate::explain::{explain, Counted, Explanation};
 use crate::initial::{deform, Initial};
 use crate::input::Pair;
 use crate::profile::{Stages, DRAPING};
 use crate::progress::{History, Progress};
 use crate::settings::Settings;
+use crate::stand_in::StandIn;
 use crate::usage::{Stopwatch, Usage};
 
 /// What a run gave and took.
@@ -44,15 +45,15 @@ impl Run {
         watch: &Stopwatch,
         stages: &mut Stages,
     ) -> anyhow::Result<Self> {
-        let Initial {
-            positions: initial,
-            assumed: mut notes,
-        } = stages.time("initial deformation", || deform(pair, settings.start))?;
-        let mut parts = std::mem::take(&mut stages.parts);
-        let drape = stages.time(DRAPING, || {
-            drape(pair, &settings, regions, &initial, &mut parts)
-        })?;
-        stages.parts = parts;
+        let Course {
+            initial,
+            drape,
+            history,
+            mut notes,
+        } = match StandIn::of(pair, &settings, stages)? {
+            Some(stand_in) => stand_in.drape(pair, &settings, regions, stages)?,
+            None => whole(pair, &settings, regions, stages)?,
+        };
         let report = stages.time("figures", || judge(pair, &drape.positions, truth))?;
         let counted = Counted {
             attraction: &drape.attraction,
@@ -68,9 +69,10 @@ impl Run {
             initial,
             draped: drape.positions,
             network: drape.network,
-            history: drape.history,
+            history,
             notes: {
-                notes.extend(drape.remarks);
+                notes.extend(drape.left_out);
+                notes.extend(drape.repaired);
                 notes
             },
             report,
@@ -161,100 +163,37 @@ pub(crate) struct Shapes {
     pub(crate) draped: Positions,
 }
 
-/// What the optimisation gave.
-struct Draped {
-    positions: Positions,
-    network: Option<NetworkMap>,
-    history: History,
-    /// What it did of its own accord, in words.
-    remarks: Vec<String>,
-    attraction: VertexData<f64>,
-    overlap: Overlap,
+/// How a result came about.
+pub(crate) struct Course {
+    /// Where the drape started, in the target's coordinates.
+    pub(crate) initial: Positions,
+    pub(crate) drape: Draped,
+    pub(crate) history: History,
+    /// What was assumed, in words.
+    pub(crate) notes: Vec<String>,
 }
 
-/// What the run takes as lying beyond the other shape.
-fn left_out(drape: &Drape<'_>) -> Vec<String> {
-    let (beyond, overlap) = (drape.beyond(), drape.overlap());
-    [
-        (overlap.target_exceeds, beyond.of_target, "target", "source"),
-        (
-            drape.is_mesh_part_left_out(),
-            beyond.of_mesh,
-            "source",
-            "target",
-        ),
-    ]
-    .into_iter()
-    .filter(|&(is_left_out, ..)| is_left_out)
-    .map(|(_, share, one, other)| {
-        let percent = 100.0 * share;
-        format!(
-            "{percent:.0} % of the {one} lies beyond the {other} and was left out (--overlap decides otherwise)"
-        )
-    })
-    .collect()
-}
-
-fn drape(
+/// The source itself is deformed and draped.
+fn whole(
     pair: &Pair,
     settings: &Settings,
     regions: &Regions,
-    initial: &Positions,
-    parts: &mut Profile,
-) -> anyhow::Result<Draped> {
-    let input = DrapeInput {
-        triangulation: &pair.source.triangulation,
-        rest: &pair.source.rest,
-        initial,
-        target: pair.target.over.as_ref(),
-        landmarks: &pair.landmarks,
+    stages: &mut Stages,
+) -> anyhow::Result<Course> {
+    let Initial { positions, assumed } =
+        stages.time("initial deformation", || deform(pair, settings.start))?;
+    let task = Task {
+        pair,
+        config: settings.config.clone(),
+        regions,
+        initial: &positions,
     };
-    let mut drape = parts.time("set-up", || Drape::new(input, settings.config.clone()))?;
-    drape.set_profile(std::mem::take(parts));
-    if !regions.is_none() {
-        drape.set_regions(regions)?;
-    }
-    let mut progress = Progress::start(drape.n_iterations());
-    while let Some(step) = drape.step()? {
-        progress.show(&step);
-    }
-    *parts = drape.profile().clone();
-    let end = parts.time("last stage", || drape.finish());
-    let mut remarks = left_out(&drape);
-    remarks.extend(repaired(&end));
-    Ok(Draped {
-        positions: end.positions,
-        network: drape.network(),
+    let mut progress = Progress::start(settings.config.n_iterations());
+    let drape = stages.time_with_parts(DRAPING, |parts| drape(task, &mut progress, parts))?;
+    Ok(Course {
+        initial: positions,
+        drape,
         history: progress.finish(),
-        remarks,
-        attraction: drape.attraction().clone(),
-        overlap: drape.overlap(),
+        notes: assumed,
     })
-}
-
-/// What the last stage took out, and what it could not.
-fn repaired(end: &Repair) -> Vec<String> {
-    let (n_before, n_left) = (count(&end.before), count(&end.left));
-    let mut remarks = Vec::new();
-    if n_before > n_left {
-        remarks.push(format!(
-            "{} folded or skinny triangles were taken out at the end (setting repair)",
-            n_before - n_left
-        ));
-    }
-    remarks.extend(end.left.folds.iter().map(|[a, b]| {
-        let (a, b) = (a.index(), b.index());
-        format!("a fold is left at the edge between vertices {a} and {b}; a landmark near it may undo it")
-    }));
-    remarks.extend(
-        end.left
-            .skinny
-            .iter()
-            .map(|t| format!("triangle {t} is left skinny; a landmark near it may widen it")),
-    );
-    remarks
-}
-
-fn count(defects: &Defects) -> usize {
-    defects.folds.len() + defects.skinny.len()
 }

@@ -11,6 +11,7 @@
 //! | query a moving mesh | [`TriangleBvh`] |
 //! | draw random places | [`sampling::TriangleSampler`] |
 //! | mark pairs of places | [`Landmark`] |
+//! | let a coarse mesh stand in for a dense one | [`Proxy`] |
 //! | see where time goes | [`Profile`] |
 //! | build test solids | [`shapes`] |
 
@@ -25,6 +26,7 @@ pub mod io;
 mod landmark;
 pub mod measure;
 mod profile;
+mod proxy;
 mod rotation;
 pub mod sampling;
 pub mod shapes;
@@ -42,6 +44,7 @@ pub use ids::{EdgeId, FaceId, HalfedgeId, Id, VertexId};
 pub use landmark::{Landmark, LandmarkKind, MeshPoint};
 pub use measure::{Aabb, UnitFrame};
 pub use profile::{Clock, Profile, Span};
+pub use proxy::Proxy;
 pub use rotation::nearest_rotation;
 pub use soup::PolygonSoup;
 pub use surface::{

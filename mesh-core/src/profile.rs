@@ -47,6 +47,15 @@ impl Profile {
         }
     }
 
+    /// A stopwatch by the same clock, at zero.
+    #[must_use]
+    pub fn fresh(&self) -> Self {
+        Self {
+            clock: self.clock,
+            spans: Vec::new(),
+        }
+    }
+
     /// Does `work` and counts what it took under `name`.
     #[inline]
     pub fn time<R>(&mut self, name: &'static str, work: impl FnOnce() -> R) -> R {

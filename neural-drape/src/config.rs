@@ -38,6 +38,13 @@ pub struct DrapeConfig {
     pub stages: Vec<Stage>,
 }
 
+impl DrapeConfig {
+    /// How many iterations a run has.
+    pub fn n_iterations(&self) -> usize {
+        self.stages.iter().map(|s| s.n_iterations).sum()
+    }
+}
+
 /// What is optimised.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]

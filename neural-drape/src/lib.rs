@@ -19,6 +19,7 @@ mod error;
 pub mod network;
 mod parametrization;
 mod presets;
+mod refine;
 mod regions;
 mod repair;
 mod state;

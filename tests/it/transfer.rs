@@ -1,5 +1,7 @@
 //! `drape transfer` and what it leaves behind.
 
+use mesh_core::{shapes, PolygonSoup};
+
 use crate::support::Workplace;
 
 #[test]
@@ -28,6 +30,54 @@ fn the_same_seed_gives_the_same_bytes_whatever_the_threads() {
     assert!(one == place.read("out.obj"));
     place.transfer("--seed 6 --threads 2").well();
     assert!(one != place.read("out.obj"));
+}
+
+#[test]
+fn a_dense_source_is_draped_by_a_stand_in_and_refined() {
+    let place = Workplace::new();
+    place.write("dense.obj", &obj(&shapes::quad_sphere(52)));
+    let mut egg = shapes::quad_sphere(12);
+    egg.positions.iter_mut().for_each(|p| p.z *= 1.6);
+    place.write("egg.obj", &obj(&egg));
+    place.write("dense.toml", "[[stages]]\nn_iterations = 40\n");
+    let line = "transfer dense.obj egg.obj -o out.obj --config dense.toml --profile --json";
+    let json = place.drape(line).well().json();
+    let said = json["warnings"].to_string();
+    assert!(said.contains("the source is dense"), "{said}");
+    assert!(
+        json["figures"]["q_transfer"]
+            .as_f64()
+            .is_some_and(|q| q > 0.9),
+        "{}",
+        json["figures"]
+    );
+    assert_eq!(json["figures"]["folds"], 0.0);
+    let spent = &json["profile"]["cpu_seconds"];
+    for stage in ["reading", "stand-in", "drape", "drape, refined", "figures"] {
+        assert!(spent[stage].as_f64().is_some(), "{spent}");
+    }
+    assert!(json["profile"]["parts"]["angles"].as_f64().is_some());
+    let faces = |name| -> Vec<String> {
+        let text = place.read(name);
+        text.lines()
+            .filter(|l| l.starts_with('f'))
+            .map(str::to_owned)
+            .collect()
+    };
+    assert_eq!(faces("dense.obj"), faces("out.obj"));
+}
+
+/// The text of an OBJ file.
+fn obj(soup: &PolygonSoup) -> String {
+    let points = soup
+        .positions
+        .iter()
+        .map(|p| format!("v {} {} {}\n", p.x, p.y, p.z));
+    let faces = soup.faces.iter().map(|face| {
+        let rows: Vec<String> = face.iter().map(|v| (v + 1).to_string()).collect();
+        format!("f {}\n", rows.join(" "))
+    });
+    points.chain(faces).collect()
 }
 
 #[test]
