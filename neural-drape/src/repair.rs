@@ -6,7 +6,7 @@ use mesh_core::measure::{triangle_normal, triangle_quality};
 use mesh_core::{
     Point3, Positions, Triangulation, TriangulationEdge, UnitFrame, Vector3, VertexData, VertexId,
 };
-use mesh_loss::LocalShape;
+use mesh_loss::{FoldBarrier, LocalShape, Loss};
 
 /// An edge is folded when the normals of its triangles have a dot product below this.
 const FOLD_COSINE: f64 = -0.5;
@@ -20,6 +20,15 @@ const SWEEPS: usize = 40;
 const FLATTENINGS: usize = 30;
 /// A patch is left as it was if mending it would move a vertex farther than this share of the longest side.
 const MAX_MOTION: f64 = 0.05;
+/// Edges that are only just folded, with cosines above this, are bent back ...
+const JUST_FOLDED: f64 = -0.65;
+/// ... in at most so many steps ...
+const UNBENDINGS: usize = 12;
+/// ... of this share of the longest side, ...
+const UNBENDING: f64 = 5e-4;
+/// ... with this many rings around them, until no cosine is below this.
+const UNBENDING_RINGS: usize = 1;
+const UNBENT_COSINE: f64 = -0.45;
 
 /// A result without what the drape broke, as far as that is possible.
 #[derive(Clone, Debug, PartialEq)]
@@ -50,7 +59,8 @@ impl Defects {
 }
 
 /// Relaxes small patches around new folds and new skinny triangles towards the shape they had at rest, turned and
-/// scaled, with their surroundings held ([`LocalShape::relax`]); a patch grows until nothing in it is broken.
+/// scaled, with their surroundings held ([`LocalShape::relax`]); a patch grows until nothing in it is broken. Before,
+/// edges that are only just folded are bent back along the gradient of [`FoldBarrier`].
 ///
 /// A patch that does not get better by a small motion stays as it was. All else stays, to the bit.
 ///
@@ -69,9 +79,10 @@ pub fn repair(
         let mender = Mender {
             judge: &judge,
             shape: LocalShape::new(triangulation, rest),
+            barriers: judge.barriers(),
             neighbours: triangulation.neighbours(x.len()),
             held,
-            reach: MAX_MOTION * UnitFrame::principal(x.as_slice()).scale,
+            size: UnitFrame::principal(x.as_slice()).scale,
         };
         let is_broken = |v: VertexId| broken.binary_search(&v).is_ok();
         for patch in triangulation.connected_groups(x.len(), is_broken) {
@@ -91,9 +102,10 @@ pub fn repair(
 struct Mender<'a> {
     judge: &'a Judge<'a>,
     shape: LocalShape,
+    barriers: Vec<FoldBarrier<'a>>,
     neighbours: VertexData<Vec<VertexId>>,
     held: &'a [VertexId],
-    reach: f64,
+    size: f64,
 }
 
 impl Mender<'_> {
@@ -104,21 +116,54 @@ impl Mender<'_> {
         patch: &[VertexId],
         broken: &[VertexId],
     ) -> Option<(Positions, Vec<VertexId>)> {
-        // A patch that turned over as a whole does not come back by itself; it is flattened first.
-        let mut starts = (0..=MAX_RINGS).flat_map(|rings| [(rings, 0), (rings, FLATTENINGS)]);
-        starts.find_map(|(rings, n_flattenings)| {
+        let free = |rings: usize| {
             let mut free = self.grown(patch, rings);
             free.retain(|v| !self.held.contains(v));
-            let mut candidate = x.clone();
-            (0..n_flattenings).for_each(|_| self.flatten(&mut candidate, &free));
-            (0..SWEEPS).find_map(|_| {
-                self.shape.relax(&mut candidate, &free);
-                let left = self.judge.broken_vertices(&candidate);
-                let is_done =
-                    is_mended(&left, broken, patch) && farthest_motion(x, &candidate) <= self.reach;
-                is_done.then(|| (candidate.clone(), left))
+            free
+        };
+        let unless_broken = |moved: &Positions, free: &[VertexId]| {
+            let left = self.judge.broken_vertices(moved);
+            let is_near = |v: &VertexId| (moved[*v] - x[*v]).norm() <= MAX_MOTION * self.size;
+            (is_mended(&left, broken, patch) && free.iter().all(is_near))
+                .then(|| (moved.clone(), left))
+        };
+        let unbent = || {
+            if self.judge.sharpest(x, patch) < JUST_FOLDED {
+                return None;
+            }
+            let (free, mut moved) = (free(UNBENDING_RINGS), x.clone());
+            (0..UNBENDINGS).find_map(|_| {
+                self.unbend(&mut moved, &free);
+                unless_broken(&moved, &free)
             })
+        };
+        let relaxed = |rings: usize, n_flattenings: usize| {
+            let (free, mut moved) = (free(rings), x.clone());
+            (0..n_flattenings).for_each(|_| self.flatten(&mut moved, &free));
+            (0..SWEEPS).find_map(|_| {
+                self.shape.relax(&mut moved, &free);
+                unless_broken(&moved, &free)
+            })
+        };
+        // A patch that turned over as a whole does not come back by itself; it is flattened first.
+        unbent().or_else(|| {
+            (0..=MAX_RINGS)
+                .find_map(|rings| relaxed(rings, 0).or_else(|| relaxed(rings, FLATTENINGS)))
         })
+    }
+
+    /// Moves the vertices of `free` a little against the gradient of the fold barrier.
+    fn unbend(&self, x: &mut Positions, free: &[VertexId]) {
+        let mut gradient = VertexData::new(x.len(), Vector3::zeros());
+        for barrier in &self.barriers {
+            barrier.accumulate(x, 1.0, &mut gradient);
+        }
+        let largest = free.iter().map(|&v| gradient[v].norm()).fold(0.0, f64::max);
+        if largest > 0.0 {
+            for &v in free {
+                x[v] -= gradient[v] * (UNBENDING * self.size / largest);
+            }
+        }
     }
 
     /// Moves each vertex of `free` once, in their order, to the mean of its neighbours.
@@ -144,14 +189,6 @@ impl Mender<'_> {
         }
         grown
     }
-}
-
-/// How far the vertex that moved farthest went.
-fn farthest_motion(from: &Positions, to: &Positions) -> f64 {
-    from.iter()
-        .zip(to)
-        .map(|(p, q)| (q - p).norm())
-        .fold(0.0, f64::max)
 }
 
 /// What is broken at `x` that was not at rest.
@@ -196,6 +233,26 @@ impl<'a> Judge<'a> {
             folds,
             skinny: self.cuts[0].skinny(self.rest, x),
         }
+    }
+
+    /// The least cosine at an edge of the patch that was not folded at rest.
+    fn sharpest(&self, x: &Positions, patch: &[VertexId]) -> f64 {
+        let of_cut = |cut: &Cut<'_>| {
+            let normals = normals(&cut.triangulation, x);
+            let is_inside = |e: &&TriangulationEdge| e.vertices.iter().all(|v| patch.contains(v));
+            let edges = cut.edges.iter().filter(is_inside);
+            edges.map(|e| cosine(e, &normals)).fold(1.0, f64::min)
+        };
+        self.cuts.iter().map(of_cut).fold(1.0, f64::min)
+    }
+
+    /// What keeps edges from folding, in every cut.
+    fn barriers(&self) -> Vec<FoldBarrier<'_>> {
+        let barrier = |cut| FoldBarrier::new(cut, self.rest, UNBENT_COSINE);
+        self.cuts
+            .iter()
+            .map(|cut| barrier(&*cut.triangulation))
+            .collect()
     }
 
     /// Corners of all that is broken, in order.
@@ -249,8 +306,13 @@ fn normals(triangulation: &Triangulation, x: &Positions) -> Vec<Vector3> {
 }
 
 fn is_folded(edge: &TriangulationEdge, normals: &[Vector3]) -> bool {
+    cosine(edge, normals) < FOLD_COSINE
+}
+
+/// Cosine between the normals of an edge's triangles.
+fn cosine(edge: &TriangulationEdge, normals: &[Vector3]) -> f64 {
     let [one, two] = edge.triangles.map(|t| normals[t]);
-    one.dot(&two) < FOLD_COSINE
+    one.dot(&two)
 }
 
 #[cfg(test)]
