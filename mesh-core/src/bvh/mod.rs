@@ -1,6 +1,7 @@
 //! Closest points and first hits on triangles: exact in f64, over an f32 box hierarchy.
 
 mod box_tree;
+mod morton;
 mod ray;
 mod stack;
 mod topology;
@@ -34,6 +35,9 @@ pub struct TriangleBvh {
     corners: Vec<[Point3; 3]>,
     bounds: Aabb,
 }
+
+/// So many queries are one piece of parallel work.
+const CHUNK: usize = 256;
 
 /// The best candidate so far.
 #[derive(Clone, Copy)]
@@ -126,9 +130,29 @@ impl TriangleBvh {
     }
 
     /// The closest point to each query, in parallel and in order; empty if there is no triangle.
+    ///
+    /// Queries are answered along a curve that fills space, each from the hit of the one before: what it looks at is
+    /// then at hand already. The answers are those of [`Self::closest_point`].
     pub fn closest_points(&self, queries: &[Point3]) -> Vec<SurfacePoint> {
-        let closest = queries.par_iter().with_min_len(64);
-        closest.filter_map(|q| self.closest_point(q)).collect()
+        let order = morton::order(queries, &self.bounds);
+        let of_chunk = |rows: &[u32]| -> Vec<SurfacePoint> {
+            let mut hint = u32::MAX;
+            let hits = rows.iter().filter_map(|&row| {
+                let hit = self.closest_point_from(&queries[row as usize], hint)?;
+                hint = hit.location.row();
+                Some(hit)
+            });
+            hits.collect()
+        };
+        let hits: Vec<Vec<SurfacePoint>> = order.par_chunks(CHUNK).map(of_chunk).collect();
+        let Some(&first) = hits.first().and_then(|chunk| chunk.first()) else {
+            return Vec::new();
+        };
+        let mut closest = vec![first; queries.len()];
+        for (&row, hit) in order.iter().zip(hits.iter().flatten()) {
+            closest[row as usize] = *hit;
+        }
+        closest
     }
 
     fn search(

@@ -130,6 +130,10 @@ impl TargetSurface for TriangleSoup {
             .expect("a triangle soup has a triangle")
     }
 
+    fn closest_points(&self, queries: &[Point3]) -> Vec<SurfacePoint> {
+        self.bvh.closest_points(queries)
+    }
+
     fn sample(&self, n: usize, rng: &mut dyn RngCore) -> Vec<SurfaceSample> {
         let places = self.sampler.sample(n, rng).into_iter();
         places
