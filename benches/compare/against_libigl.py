@@ -32,7 +32,7 @@ def main(folder):
     for n in (29, 91, 289):
         vertices, faces = mesh(folder, n)
         queries = np.fromfile(f"{folder}/{n}.q").reshape(-1, 3)
-        tree = igl.AABB_f64_3()
+        tree = igl.AABB()
         build = median(lambda: tree.init(vertices, faces))
         seconds = median(lambda: tree.squared_distance(vertices, faces, queries))
         print(f"closest {len(faces)} triangles: libigl {seconds:.4f} s, build {build:.4f} s", flush=True)
