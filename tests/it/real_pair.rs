@@ -20,16 +20,22 @@ fn data() -> Option<PathBuf> {
     None
 }
 
-#[test]
-fn a_horse_becomes_a_wolf_and_keeps_its_file() {
-    let Some(pair) = data() else {
-        return;
-    };
+/// A folder with settings for a short run.
+fn workplace() -> Workplace {
     let place = Workplace::new();
     place.write(
         "short.toml",
         "[[stages]]\nn_iterations = 60\n[[stages]]\nn_iterations = 30\n",
     );
+    place
+}
+
+#[test]
+fn a_horse_becomes_a_wolf_and_keeps_its_file() {
+    let Some(pair) = data() else {
+        return;
+    };
+    let place = workplace();
     let path = |name: &str| pair.join(name).to_string_lossy().into_owned();
     let (source, target, landmarks) = (
         path("source.obj"),
@@ -70,11 +76,7 @@ fn units_place_and_turn_of_the_files_do_not_matter() {
     let Some(pair) = data() else {
         return;
     };
-    let place = Workplace::new();
-    place.write(
-        "short.toml",
-        "[[stages]]\nn_iterations = 60\n[[stages]]\nn_iterations = 30\n",
-    );
+    let place = workplace();
     let drape = |folder: &str, of_source: &Map<'_>, of_target: &Map<'_>| {
         std::fs::create_dir(place.path(folder)).expect("a folder");
         for (name, map) in [("source.obj", of_source), ("target.obj", of_target)] {
