@@ -87,6 +87,8 @@ impl Progress {
     }
 
     pub(crate) fn show(&mut self, step: &StepReport) {
+        // A drape that goes on after its end has more iterations than it had.
+        self.n_iterations = self.n_iterations.max(self.n_before + step.n_iterations);
         let step = &StepReport {
             iteration: self.n_before + step.iteration,
             n_iterations: self.n_iterations,
@@ -96,6 +98,7 @@ impl Progress {
         self.history.record(step);
         match &self.shown {
             Shown::Bar(bar) => {
+                bar.set_length(step.n_iterations as u64);
                 bar.set_position(step.iteration as u64 + 1);
                 bar.set_message(terms(step));
             }
@@ -180,5 +183,15 @@ mod tests {
         history.record(&step(0, 2));
         history.record(&step(1, 2));
         assert_eq!(history.curves[0].points, [(0, 0.5), (1, 0.5)]);
+    }
+
+    #[test]
+    fn a_drape_may_go_on_after_its_end() {
+        let mut progress = Progress::start(2);
+        for (k, n) in [(0, 2), (1, 2), (2, 4), (3, 4)] {
+            progress.show(&step(k, n));
+        }
+        assert_eq!(progress.n_iterations, 4);
+        assert_eq!(progress.finish().curves[0].points.len(), 4);
     }
 }
