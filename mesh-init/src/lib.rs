@@ -12,7 +12,7 @@
 //! | deform as rigidly as possible | [`ArapSolver`] |
 //!
 //! ```
-//! use mesh_core::{shapes, Aabb, Landmark, Point3, VertexId};
+//! use mesh_core::{shapes, Landmark, Point3, UnitFrame, VertexId};
 //! use mesh_init::{initialize, InitConfig, InitInput};
 //! let (mesh, rest) = shapes::quad_sphere(8).into_halfedge()?;
 //! let stretched = rest.map(|p| Point3::new(3.0 * p.x, p.y, p.z));
