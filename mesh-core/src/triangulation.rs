@@ -77,6 +77,12 @@ impl Triangulation {
         &self.triangles
     }
 
+    /// The rows of every triangle's vertices.
+    pub fn rows(&self) -> Vec<[u32; 3]> {
+        let of = |t: &[VertexId; 3]| t.map(|v| v.index() as u32);
+        self.triangles.iter().map(of).collect()
+    }
+
     /// The face that triangle `t` is part of.
     pub fn parent(&self, t: usize) -> FaceId {
         self.parents[t]

@@ -113,7 +113,7 @@ impl<'a> SurfaceMatcher<'a> {
             target,
             frame,
             bvh: TriangleBvh::new(triangulation.corners(x).collect()),
-            fans: TriangleFans::new(rows(triangulation)),
+            fans: TriangleFans::new(triangulation.rows()),
             boundary: Boundary::new(triangulation, x.len()),
             by_face: TriangleSampler::new(std::iter::repeat_n(1.0, triangulation.len())),
             hints: Hints::default(),
@@ -327,12 +327,6 @@ impl Side<'_> {
             is_on_rim: false,
         }
     }
-}
-
-/// The vertices of each triangle, by row.
-fn rows(triangulation: &Triangulation) -> Vec<[u32; 3]> {
-    let of = |t: &[VertexId; 3]| t.map(|v| v.index() as u32);
-    triangulation.triangles().iter().map(of).collect()
 }
 
 /// The open boundary of the mesh.

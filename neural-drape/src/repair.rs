@@ -121,7 +121,7 @@ impl Mender<'_> {
             free.retain(|v| !self.held.contains(v));
             free
         };
-        let unless_broken = |moved: &Positions, free: &[VertexId]| {
+        let if_mended = |moved: &Positions, free: &[VertexId]| {
             let left = self.judge.broken_vertices(moved);
             let is_near = |v: &VertexId| (moved[*v] - x[*v]).norm() <= MAX_MOTION * self.size;
             (is_mended(&left, broken, patch) && free.iter().all(is_near))
@@ -134,7 +134,7 @@ impl Mender<'_> {
             let (free, mut moved) = (free(UNBENDING_RINGS), x.clone());
             (0..UNBENDINGS).find_map(|_| {
                 self.unbend(&mut moved, &free);
-                unless_broken(&moved, &free)
+                if_mended(&moved, &free)
             })
         };
         let relaxed = |rings: usize, n_flattenings: usize| {
@@ -142,7 +142,7 @@ impl Mender<'_> {
             (0..n_flattenings).for_each(|_| self.flatten(&mut moved, &free));
             (0..SWEEPS).find_map(|_| {
                 self.shape.relax(&mut moved, &free);
-                unless_broken(&moved, &free)
+                if_mended(&moved, &free)
             })
         };
         // A patch that turned over as a whole does not come back by itself; it is flattened first.

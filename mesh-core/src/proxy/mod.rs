@@ -45,12 +45,7 @@ impl Proxy {
     ) -> Self {
         let mut is_kept = vec![false; rest.len()];
         kept.iter().for_each(|v| is_kept[v.index()] = true);
-        let triangles: Vec<[u32; 3]> = triangulation
-            .triangles()
-            .iter()
-            .map(|t| t.map(|v| v.index() as u32))
-            .collect();
-        let mut collapse = Collapse::new(rest.as_slice(), &triangles, is_kept);
+        let mut collapse = Collapse::new(rest.as_slice(), &triangulation.rows(), is_kept);
         collapse.run(n);
         let left = collapse.triangles();
         let ends = collapse.ends();

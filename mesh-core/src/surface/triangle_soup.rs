@@ -196,8 +196,6 @@ fn triangles(soup: PolygonSoup) -> Result<(Vec<Point3>, Vec<[u32; 3]>), Topology
         return Ok((soup.positions, triangles));
     }
     let (mesh, positions) = soup.into_halfedge()?;
-    let triangulation = Triangulation::new(&mesh, &positions);
-    let rows = |t: &[crate::VertexId; 3]| t.map(|v| v.index() as u32);
-    let triangles = triangulation.triangles().iter().map(rows).collect();
+    let triangles = Triangulation::new(&mesh, &positions).rows();
     Ok((positions.into_vec(), triangles))
 }
