@@ -19,6 +19,15 @@ pub(crate) enum Start {
 }
 
 impl Start {
+    /// How landmarks spread; none where the affine map is all.
+    pub(crate) fn config(self) -> Option<InitConfig> {
+        match self {
+            Self::Standard => Some(InitConfig::standard()),
+            Self::Paper => Some(InitConfig::paper()),
+            Self::Affine => None,
+        }
+    }
+
     /// The start that belongs to a preset.
     pub(crate) fn of_preset(preset: &str) -> Self {
         match preset {
@@ -58,10 +67,9 @@ pub(crate) fn deform(pair: &Pair, start: Start) -> anyhow::Result<Initial> {
             None => pair.target.surface.principal_frame(),
         },
     };
-    let positions = match start {
-        Start::Standard => initialize(input, &InitConfig::standard())?.positions,
-        Start::Paper => initialize(input, &InitConfig::paper())?.positions,
-        Start::Affine => {
+    let positions = match start.config() {
+        Some(config) => initialize(input, &config)?.positions,
+        None => {
             let affine = initialize(input, &InitConfig::paper())?.affine;
             placed.map(|p| affine.apply(p))
         }

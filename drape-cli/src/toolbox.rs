@@ -115,6 +115,7 @@ impl Toolbox for CommandLine {
         let read = settings::from_text(toml)?;
         Ok(Settings {
             toml: settings::to_toml(&read)?,
+            live: read.start.config(),
             preset: read.preset,
             config: read.config,
         })

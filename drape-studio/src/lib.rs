@@ -21,7 +21,6 @@ mod latest;
 mod pick;
 mod preview;
 mod replay;
-mod rough;
 mod runner;
 mod scene;
 mod server;

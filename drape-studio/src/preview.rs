@@ -7,15 +7,20 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use mesh_core::{Landmark, Positions};
+use mesh_init::{InitConfig, InteractiveInit};
 
 use crate::course::adjusted;
 use crate::desk::Inbox;
 use crate::figures::FiguresJob;
 use crate::hub::{FrameKind, Hub};
 use crate::latest::Latest;
-use crate::rough::{rough, LARGE};
+use crate::scene::Source;
 use crate::{Scene, Settings, Toolbox};
 
+/// Sources with more vertices than this are shown by a stand-in at once, then exactly.
+const LARGE: usize = 4000;
+/// Vertices of the stand-in.
+const STAND_IN: usize = 3000;
 /// The exact shape of a large source is found once nothing was edited for this long.
 const SETTLED: Duration = Duration::from_millis(500);
 
@@ -65,21 +70,61 @@ pub(crate) fn preview(
     })
 }
 
-/// Starts the thread that shows the shapes of large sources roughly, before [`preview`] has the exact ones.
-pub(crate) fn rough_preview(hub: Arc<Hub>) -> Latest<PreviewJob> {
+/// Starts the thread that shows the shapes of large sources while landmarks are dragged, by a stand-in, before
+/// [`preview`] has the exact ones.
+pub(crate) fn live_preview(hub: Arc<Hub>) -> Latest<PreviewJob> {
+    let mut live: Option<Live> = None;
     Latest::start(move |job: PreviewJob| {
-        let (kind, present) = match &job.shown {
-            Shown::Nothing => return,
-            Shown::Initial => (FrameKind::Initial, None),
-            Shown::Adjusted(present) => (FrameKind::Adjusted, Some(present.as_ref())),
+        let Some(config) = job.settings.live.filter(|_| job.is_large()) else {
+            return;
         };
-        if job.is_large() && job.is_newest() {
-            let x = rough(&job.scene, &job.landmarks, present);
-            if job.is_newest() {
-                hub.show(&job.scene, kind, Arc::new(x));
-            }
+        if !live.as_ref().is_some_and(|l| l.is_for(&job, config)) {
+            live = Live::of(&job, config);
+        }
+        // Whatever is wrong with the landmarks is told by the exact preview.
+        let shown = live.as_mut().and_then(|l| l.show(&job));
+        if let Some((kind, x)) = shown.filter(|_| job.is_newest()) {
+            hub.show(&job.scene, kind, Arc::new(x));
         }
     })
+}
+
+/// A source that is ready to be deformed at once.
+struct Live {
+    source: Arc<Source>,
+    config: InitConfig,
+    init: InteractiveInit,
+}
+
+impl Live {
+    fn of(job: &PreviewJob, config: InitConfig) -> Option<Self> {
+        let source = Arc::clone(&job.scene.source);
+        let init = InteractiveInit::new(&source.triangulation, &source.rest, STAND_IN, config);
+        Some(Self {
+            init: init.ok()?,
+            source,
+            config,
+        })
+    }
+
+    fn is_for(&self, job: &PreviewJob, config: InitConfig) -> bool {
+        Arc::ptr_eq(&self.source, &job.scene.source) && self.config == config
+    }
+
+    fn show(&mut self, job: &PreviewJob) -> Option<(FrameKind, Positions)> {
+        match &job.shown {
+            Shown::Nothing => None,
+            Shown::Initial => {
+                let frame = job.scene.target.judged().principal_frame();
+                let initial = self.init.solve(&job.landmarks, frame).ok()?;
+                Some((FrameKind::Initial, initial.positions))
+            }
+            Shown::Adjusted(present) => {
+                let x = self.init.adjust(&job.landmarks, present).ok()?;
+                Some((FrameKind::Adjusted, x))
+            }
+        }
+    }
 }
 
 impl PreviewJob {

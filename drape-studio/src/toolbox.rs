@@ -4,6 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use mesh_core::{Landmark, Positions, TargetSurface, VertexId};
+use mesh_init::InitConfig;
 use neural_drape::{DrapeConfig, Regions};
 use serde::{Deserialize, Serialize};
 
@@ -18,6 +19,8 @@ pub struct Settings {
     pub preset: String,
     /// Those of the drape itself.
     pub config: DrapeConfig,
+    /// How landmarks deform a large source while they are dragged; none where only the exact shape will do.
+    pub live: Option<InitConfig>,
 }
 
 /// A target as the command line takes it.

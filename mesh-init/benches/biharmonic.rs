@@ -3,7 +3,7 @@
 
 use criterion::{criterion_group, criterion_main, BenchmarkId, Criterion, Throughput};
 use mesh_core::{shapes, Triangulation, Vector3};
-use mesh_init::biharmonic_displacement;
+use mesh_init::{biharmonic_displacement, BiharmonicSolver};
 
 fn field(c: &mut Criterion) {
     let mut group = c.benchmark_group("biharmonic");
@@ -23,6 +23,11 @@ fn field(c: &mut Criterion) {
             b.iter(|| {
                 biharmonic_displacement(&triangulation, &rest, &held).expect("every piece is held")
             });
+        });
+        let (rows, values): (Vec<_>, Vec<_>) = held.iter().copied().unzip();
+        let solver = BiharmonicSolver::new(&triangulation, &rest, &rows).expect("it is held");
+        group.bench_function(BenchmarkId::new("again", rest.len()), |b| {
+            b.iter(|| solver.solve(&values));
         });
     }
 }

@@ -1,5 +1,6 @@
 //! What can go wrong before draping starts.
 
+use mesh_core::TopologyError;
 use mesh_operators::SolveError;
 
 /// Why there is no initial deformation.
@@ -32,6 +33,9 @@ pub enum InitError {
         /// Row of the landmark.
         landmark: usize,
     },
+    /// The source is dense and has no stand-in.
+    #[error("the source has no coarse stand-in")]
+    StandIn(#[from] TopologyError),
     /// A linear system of the deformation cannot be solved.
     #[error("the deformation cannot be solved for")]
     Solve(#[from] SolveError),

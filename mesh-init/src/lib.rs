@@ -4,6 +4,7 @@
 //! |---|---|
 //! | get the shape that draping starts at | [`initialize`] |
 //! | deform a result further when landmarks are added | [`adjust`] |
+//! | do either again and again while landmarks are dragged | [`InteractiveInit`] |
 //! | fit as much of an affine map as landmarks determine | [`fit_affine`] |
 //! | find how the source stands, without landmarks | [`find_pose`] |
 //! | find landmarks that disagree with the others | [`leave_one_out_residuals`] |
@@ -27,8 +28,10 @@ mod affine;
 mod arap;
 mod biharmonic;
 mod cells;
+mod deformer;
 mod error;
 mod initialize;
+mod interactive;
 mod pose;
 mod reach;
 mod similar;
@@ -38,10 +41,11 @@ pub use affine::{
     SimilarityPrior,
 };
 pub use arap::{ArapScratch, ArapSolver};
-pub use biharmonic::biharmonic_displacement;
+pub use biharmonic::{biharmonic_displacement, BiharmonicSolver};
 pub use error::InitError;
 pub use initialize::{
     adjust, initialize, point_pairs, InitConfig, InitInput, Initial, Pinning, Spread,
 };
+pub use interactive::InteractiveInit;
 pub use pose::{find_pose, Pose, PoseInput};
 pub use similar::{SimilarConfig, SimilarSolver};

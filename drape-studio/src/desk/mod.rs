@@ -23,7 +23,7 @@ use crate::checkpoint;
 use crate::figures::{judge, FiguresJob};
 use crate::hub::{Frame, FrameKind, Hub, Made};
 use crate::latest::Latest;
-use crate::preview::{preview, rough_preview, PreviewJob, Shown};
+use crate::preview::{live_preview, preview, PreviewJob, Shown};
 use crate::runner::{News, Runner};
 use crate::session::{Document, InputRecord, RunLog, Session};
 use crate::{InnerPart, Scene, Settings, Source, Target, Toolbox};
@@ -124,7 +124,7 @@ pub(crate) struct Desk {
     run: Option<ActiveRun>,
     n_runs: u32,
     preview: Latest<PreviewJob>,
-    rough: Latest<PreviewJob>,
+    live: Latest<PreviewJob>,
     n_previews: u32,
     newest_preview: Arc<AtomicU32>,
     figures: Arc<Latest<FiguresJob>>,
@@ -154,7 +154,7 @@ impl Desk {
                 Arc::clone(&parts.hub),
                 inbox.clone(),
             ),
-            rough: rough_preview(Arc::clone(&parts.hub)),
+            live: live_preview(Arc::clone(&parts.hub)),
             inbox: inbox.clone(),
             toolbox: parts.toolbox,
             hub: parts.hub,
@@ -283,7 +283,7 @@ impl Desk {
             newest: Arc::clone(&self.newest_preview),
             figures: Arc::clone(&self.figures),
         };
-        self.rough.ask(job.clone());
+        self.live.ask(job.clone());
         self.preview.ask(job);
     }
 

@@ -7,7 +7,8 @@ use rayon::prelude::*;
 
 use crate::bvh::closest_point_on_triangle;
 use crate::{
-    nearest_rotation, Point3, PolygonSoup, Positions, Triangulation, Vector3, VertexData, VertexId,
+    nearest_rotation, MeshPoint, Point3, PolygonSoup, Positions, Triangulation, Vector3,
+    VertexData, VertexId,
 };
 use collapse::Collapse;
 
@@ -95,22 +96,26 @@ impl Proxy {
         self.row_of[v.index()].map(|row| VertexId::new(row as usize))
     }
 
-    /// Where the vertices of the dense mesh go when those of the stand-in go to `x`.
+    /// The place of the stand-in, in its rows, that carries a vertex of the dense mesh.
+    pub fn place_of(&self, v: VertexId) -> MeshPoint {
+        let Binding { rows, weights } = self.bindings[v.index()];
+        MeshPoint::barycentric(rows.map(|row| VertexId::new(row as usize)), weights)
+    }
+
+    /// Where the vertices of the dense mesh go from `rest` when those of the stand-in go to `x`.
     ///
     /// `xᵥ = Σₖ wₖ (xₖ + Fₖ (rᵥ − rₖ))`, with the turn and scale F that carries the one-ring of a vertex of the stand-in
-    /// best from rest to where it is. Vertices of the stand-in are where `x` has them, to the bit.
+    /// best from where `rest` has it to where it is. Vertices of the stand-in are where `x` has them, to the bit. Any
+    /// shape of the dense mesh may stand for its rest.
     ///
     /// # Panics
-    /// If there is not one position for each vertex of the stand-in, or `rest` is not that of the dense mesh.
+    /// If there is not one position for each vertex of the stand-in, or `rest` is not one of the dense mesh.
     pub fn carry(&self, rest: &Positions, x: &Positions) -> Positions {
         assert_eq!(x.len(), self.vertices.len(), "one position for each vertex");
-        assert_eq!(
-            rest.len(),
-            self.bindings.len(),
-            "the rest shape of the dense mesh"
-        );
+        assert_eq!(rest.len(), self.bindings.len(), "a shape of the dense mesh");
         let x = x.as_slice();
-        let frames = self.frames(x);
+        let before: Vec<Point3> = self.vertices.iter().map(|&v| rest[v]).collect();
+        let frames = self.frames(&before, x);
         let carried = |(r, binding): (&Point3, &Binding)| {
             let terms = binding
                 .rows
@@ -119,7 +124,7 @@ impl Proxy {
                 .filter(|(_, w)| *w != 0.0);
             let sum = terms.fold(Vector3::zeros(), |sum, (&row, weight)| {
                 let row = row as usize;
-                sum + (x[row].coords + frames[row] * (r - self.soup.positions[row])) * weight
+                sum + (x[row].coords + frames[row] * (r - before[row])) * weight
             });
             Point3::from(sum)
         };
@@ -128,8 +133,7 @@ impl Proxy {
     }
 
     /// Turn and scale of the one-ring of each vertex.
-    fn frames(&self, x: &[Point3]) -> Vec<Matrix3<f64>> {
-        let rest = &self.soup.positions;
+    fn frames(&self, rest: &[Point3], x: &[Point3]) -> Vec<Matrix3<f64>> {
         let mut covariances = vec![Matrix3::zeros(); rest.len()];
         let mut squares = vec![0.0; rest.len()];
         for face in &self.soup.faces {

@@ -5,5 +5,6 @@ mod affine;
 mod arap;
 mod biharmonic;
 mod initialize;
+mod interactive;
 mod shapes;
 mod similar;

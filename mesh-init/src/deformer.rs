@@ -1,0 +1,300 @@
+//! The deformation of a placed shape by what pulls at its vertices, kept ready for other goals.
+
+use mesh_core::{LandmarkKind, Point3, Positions, Triangulation, UnitFrame, Vector3, VertexId};
+use mesh_operators::{geodesic_distance_unfolded, SolveError, SpaceExtension};
+
+use crate::reach::is_reached;
+use crate::{ArapSolver, BiharmonicSolver, InitConfig, InitError, Pinning, SimilarSolver, Spread};
+
+/// Rigid landmarks move what lies within this geodesic distance, in longest sides of the box (the authors' program).
+const RIGID_REACH: f64 = 0.25;
+/// A field that pieces without a landmark follow has at most this many centres.
+const MAX_CENTRES: usize = 1000;
+
+/// What a landmark pulls at.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Pull {
+    /// The vertex that it holds.
+    pub(crate) vertex: VertexId,
+    /// From the place of the landmark to the vertex, in the placed shape.
+    pub(crate) offset: Vector3,
+    pub(crate) kind: LandmarkKind,
+}
+
+/// A shape with all that a deformation of it needs but the goals: its systems are factored.
+#[derive(Clone, Debug)]
+pub(crate) struct Deformer {
+    triangulation: Triangulation,
+    frame: UnitFrame,
+    /// The shape in the frame of its box.
+    start: Positions,
+    pulls: Vec<Pull>,
+    /// The handle of each pull, and those of each kind.
+    handle_of: Vec<usize>,
+    handles: Vec<(VertexId, LandmarkKind)>,
+    all: Option<Field>,
+    rigid: Option<Rigid>,
+    led: Vec<VertexId>,
+    carried: Vec<VertexId>,
+}
+
+/// Where handles belong, and where they were, in the frame of the box.
+type Goals = Vec<Point3>;
+
+impl Deformer {
+    /// Prepares the shape `placed`. Pulls at one vertex make one handle, rigid where any of them is.
+    pub(crate) fn new(
+        triangulation: Triangulation,
+        placed: &Positions,
+        pulls: Vec<Pull>,
+        config: &InitConfig,
+    ) -> Result<Self, InitError> {
+        let frame = UnitFrame::principal(placed.as_slice());
+        let start = placed.map(|p| frame.to_unit(p));
+        let mut handles: Vec<(VertexId, LandmarkKind)> = Vec::new();
+        let mut handle_of = Vec::with_capacity(pulls.len());
+        for pull in &pulls {
+            let known = handles.iter().position(|(v, _)| *v == pull.vertex);
+            let row = known.unwrap_or(handles.len());
+            if known.is_none() {
+                handles.push((pull.vertex, pull.kind));
+            } else if pull.kind == LandmarkKind::Rigid {
+                handles[row].1 = LandmarkKind::Rigid;
+            }
+            handle_of.push(row);
+        }
+        let rows: Vec<VertexId> = handles.iter().map(|&(v, _)| v).collect();
+        let is_led = is_reached(&triangulation, start.len(), &rows);
+        let (led, carried) = start.ids().partition(|&v| is_led[v]);
+        let (mut all, mut rigid) = (None, None);
+        if !rows.is_empty() {
+            let shape = Shape {
+                triangulation: &triangulation,
+                start: &start,
+            };
+            all = Some(Field::new(&shape, &rows, config)?);
+            rigid = Rigid::new(&shape, &handles, config)?;
+        }
+        Ok(Self {
+            triangulation,
+            frame,
+            start,
+            pulls,
+            handle_of,
+            handles,
+            all,
+            rigid,
+            led,
+            carried,
+        })
+    }
+
+    /// The longest side of the box of the placed shape.
+    pub(crate) fn size(&self) -> f64 {
+        self.frame.scale
+    }
+
+    /// How many vertices follow the space around them, since no handle is on their piece.
+    pub(crate) fn n_carried(&self) -> usize {
+        if self.handles.is_empty() {
+            0
+        } else {
+            self.carried.len()
+        }
+    }
+
+    /// Where the vertices go when each landmark belongs to its target; without a handle nothing moves.
+    pub(crate) fn solve(&self, targets: &[Point3]) -> Result<Positions, InitError> {
+        let Some(all) = &self.all else {
+            return Ok(self.start.map(|p| self.frame.from_unit(p)));
+        };
+        let shape = Shape {
+            triangulation: &self.triangulation,
+            start: &self.start,
+        };
+        let goals = self.goals(targets);
+        let mut x = all.solve(&shape, &goals);
+        if let Some(rigid) = &self.rigid {
+            x = rigid.turn(&shape, &self.handles, &goals, &x)?;
+        }
+        self.carry(&mut x)?;
+        Ok(x.map(|p| self.frame.from_unit(p)))
+    }
+
+    /// By how much the vertex of each landmark misses where it belongs, in the coordinates of the shape.
+    pub(crate) fn misses(&self, targets: &[Point3], x: &Positions) -> Vec<Vector3> {
+        let goals = self.goals(targets);
+        let handles = self.handle_of.iter();
+        let goals = handles.map(|&handle| self.frame.from_unit(&goals[handle]));
+        let pulls = self.pulls.iter().zip(goals);
+        pulls.map(|(pull, goal)| goal - x[pull.vertex]).collect()
+    }
+
+    /// Where each handle belongs: the target of its landmark, moved by the offset; the mean where there are several.
+    fn goals(&self, targets: &[Point3]) -> Goals {
+        assert_eq!(
+            targets.len(),
+            self.pulls.len(),
+            "one target for each landmark"
+        );
+        let mut goals = vec![(Point3::origin(), 0.0); self.handles.len()];
+        let pulls = self.pulls.iter().zip(targets).zip(&self.handle_of);
+        for ((pull, target), &handle) in pulls {
+            let goal = self.frame.to_unit(&(target + pull.offset));
+            let (mean, n) = &mut goals[handle];
+            *n += 1.0;
+            if *n == 1.0 {
+                *mean = goal;
+            } else {
+                *mean += (goal - *mean) / *n;
+            }
+        }
+        goals.into_iter().map(|(mean, _)| mean).collect()
+    }
+
+    /// Vertices without a handle on their piece follow the field of those with one.
+    fn carry(&self, x: &mut Positions) -> Result<(), SolveError> {
+        if self.carried.is_empty() {
+            return Ok(());
+        }
+        let points: Vec<Point3> = self.led.iter().map(|&v| self.start[v]).collect();
+        let moves: Vec<Vector3> = self.led.iter().map(|&v| x[v] - self.start[v]).collect();
+        let field = SpaceExtension::new(&points, &moves, MAX_CENTRES)?;
+        for &v in &self.carried {
+            x[v] = self.start[v] + field.displacement_at(&self.start[v]);
+        }
+        Ok(())
+    }
+}
+
+/// The surface where it was placed, in the frame of its box.
+struct Shape<'a> {
+    triangulation: &'a Triangulation,
+    start: &'a Positions,
+}
+
+impl Shape<'_> {
+    /// Vertices that a path along the surface joins to one of `rows`, but farther than `reach`.
+    fn farther_than(&self, reach: f64, rows: &[VertexId]) -> Vec<VertexId> {
+        let distance = geodesic_distance_unfolded(self.triangulation, self.start, rows);
+        let is_far = |v: &VertexId| distance[*v].is_finite() && distance[*v] > reach;
+        distance.ids().filter(is_far).collect()
+    }
+}
+
+/// The smooth deformation of the pieces with a handle; the others stay.
+#[derive(Clone, Debug)]
+struct Field {
+    handles: Vec<VertexId>,
+    n_pinned: usize,
+    biharmonic: BiharmonicSolver,
+    similar: Option<SimilarSolver>,
+}
+
+impl Field {
+    fn new(
+        shape: &Shape<'_>,
+        handles: &[VertexId],
+        config: &InitConfig,
+    ) -> Result<Self, SolveError> {
+        let pinned = match config.pinning {
+            Pinning::None => Vec::new(),
+            Pinning::Beyond(reach) => shape.farther_than(reach, handles),
+        };
+        let similar = match config.spread {
+            Spread::Biharmonic => None,
+            Spread::Similar(config) => Some(SimilarSolver::new(
+                shape.triangulation,
+                shape.start,
+                handles,
+                config,
+            )?),
+        };
+        let held = [handles, &pinned].concat();
+        Ok(Self {
+            biharmonic: BiharmonicSolver::new(shape.triangulation, shape.start, &held)?,
+            handles: handles.to_vec(),
+            n_pinned: pinned.len(),
+            similar,
+        })
+    }
+
+    fn solve(&self, shape: &Shape<'_>, goals: &[Point3]) -> Positions {
+        let moves = self.handles.iter().zip(goals);
+        let mut moves: Vec<Vector3> = moves.map(|(&v, goal)| goal - shape.start[v]).collect();
+        moves.resize(goals.len() + self.n_pinned, Vector3::zeros());
+        let d = self.biharmonic.solve(&moves);
+        let biharmonic = shape.start.iter().zip(&d).map(|(p, d)| p + d).collect();
+        match &self.similar {
+            None => biharmonic,
+            Some(similar) => similar.solve(goals, &biharmonic),
+        }
+    }
+}
+
+/// What turns as one around rigid handles, in the shape that the soft ones gave.
+#[derive(Clone, Debug)]
+struct Rigid {
+    /// Rows of the soft handles, and their field where there are any.
+    soft: Vec<usize>,
+    field: Option<Field>,
+    /// Rows of all handles, the rigid ones first, then the vertices that stay where the soft ones put them.
+    order: Vec<usize>,
+    far: Vec<VertexId>,
+    /// The solver where no soft handle changes the shape that turns.
+    solver: Option<ArapSolver>,
+}
+
+impl Rigid {
+    /// None where no handle is rigid.
+    fn new(
+        shape: &Shape<'_>,
+        handles: &[(VertexId, LandmarkKind)],
+        config: &InitConfig,
+    ) -> Result<Option<Self>, SolveError> {
+        let (rigid, soft): (Vec<usize>, Vec<usize>) =
+            (0..handles.len()).partition(|&h| handles[h].1 == LandmarkKind::Rigid);
+        if rigid.is_empty() {
+            return Ok(None);
+        }
+        let vertices = |rows: &[usize]| rows.iter().map(|&h| handles[h].0).collect::<Vec<_>>();
+        let mut far = shape.farther_than(RIGID_REACH, &vertices(&rigid));
+        far.retain(|v| handles.iter().all(|(held, _)| held != v));
+        let order = [&rigid[..], &soft].concat();
+        let (mut field, mut solver) = (None, None);
+        if soft.is_empty() {
+            let held = [vertices(&order), far.clone()].concat();
+            solver = Some(ArapSolver::new(shape.triangulation, shape.start, &held)?);
+        } else {
+            field = Some(Field::new(shape, &vertices(&soft), config)?);
+        }
+        Ok(Some(Self {
+            soft,
+            field,
+            order,
+            far,
+            solver,
+        }))
+    }
+
+    fn turn(
+        &self,
+        shape: &Shape<'_>,
+        handles: &[(VertexId, LandmarkKind)],
+        goals: &[Point3],
+        guess: &Positions,
+    ) -> Result<Positions, SolveError> {
+        let mut targets: Vec<Point3> = self.order.iter().map(|&h| goals[h]).collect();
+        let Some(field) = &self.field else {
+            targets.extend(self.far.iter().map(|&v| shape.start[v]));
+            let solver = self.solver.as_ref().expect("it is made where no field is");
+            return Ok(solver.solve(&targets, guess));
+        };
+        let soft: Vec<Point3> = self.soft.iter().map(|&h| goals[h]).collect();
+        let base = field.solve(shape, &soft);
+        targets.extend(self.far.iter().map(|&v| base[v]));
+        let held = self.order.iter().map(|&h| handles[h].0);
+        let held: Vec<VertexId> = held.chain(self.far.iter().copied()).collect();
+        Ok(ArapSolver::new(shape.triangulation, &base, &held)?.solve(&targets, guess))
+    }
+}
