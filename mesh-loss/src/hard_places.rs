@@ -1,10 +1,11 @@
 //! Corners that are far off, kept in mind from one iteration to the next.
 
 use mesh_core::sampling::TrianglePlace;
-use mesh_core::{Point3, Positions, SurfaceSample, TargetSurface, TriangleBvh, Triangulation};
+use mesh_core::{Point3, Positions, SurfaceSample, TargetSurface, Triangulation};
 use rand::{Rng, RngCore};
 
-use crate::matching::{Side, SurfaceMatch, NO_HINT};
+use crate::matching::SurfaceMatch;
+use crate::pairing::{Side, NO_HINT};
 
 /// The corners kept in mind, as rows: what a matcher remembers from one resampling to the next.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -71,7 +72,6 @@ impl HardPlaces {
     /// The target's far corners, each with its closest place on the mesh.
     pub(crate) fn match_target(
         &mut self,
-        bvh: &TriangleBvh,
         side: &Side<'_>,
         rng: &mut dyn RngCore,
     ) -> Vec<SurfaceMatch> {
@@ -91,7 +91,7 @@ impl HardPlaces {
             rows.iter().zip(hints).map(of_row).collect()
         });
         let pairs = with_hints(&rows, &mut self.hints[2], |hints| {
-            side.match_samples(&samples, bvh, hints)
+            side.match_samples(&samples, hints)
         });
         let (rows, pairs) = farthest(rows, pairs, side.x, n);
         self.kept.of_target = rows;

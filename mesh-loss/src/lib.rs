@@ -18,6 +18,7 @@
 //! [`SurfaceMatcher::resample`] draws samples and finds closest points; it alone changes what the distance terms see.
 
 mod area_kl;
+mod boundary;
 mod chamfer;
 mod conformal;
 mod corner_angle;
@@ -31,6 +32,7 @@ mod local_shape;
 mod loss;
 mod matching;
 mod normal_agreement;
+mod pairing;
 mod triangle_quality;
 mod worst_distance;
 

@@ -1,15 +1,16 @@
 //! Random places on both surfaces and their closest points on the other: what the distance terms look at.
 
-use mesh_core::measure::{triangle_area, triangle_normal};
+use mesh_core::measure::triangle_area;
 use mesh_core::sampling::{TrianglePlace, TriangleSampler};
 use mesh_core::{
-    is_on_side, Location, NormalSign, Point3, Positions, Profile, SurfaceSample, TargetSurface,
-    TriangleBvh, TriangleFans, Triangulation, UnitFrame, Vector3, VertexData, VertexId, ON_SIDE,
+    Point3, Positions, Profile, TargetSurface, TriangleBvh, TriangleFans, Triangulation, UnitFrame,
+    Vector3, VertexData, VertexId,
 };
 use rand::RngCore;
-use rayon::prelude::*;
 
+use crate::boundary::Boundary;
 use crate::hard_places::{HardCorners, HardPlaces};
+use crate::pairing::{Side, NO_HINT};
 
 /// A place on the moving mesh and the fixed point it is matched with.
 #[derive(Clone, Copy, Debug)]
@@ -72,7 +73,8 @@ pub struct SamplingConfig {
 pub struct Overlap {
     /// The target reaches beyond the mesh: its samples whose closest place is on the mesh's boundary are left out.
     pub target_exceeds: bool,
-    /// The mesh reaches beyond the target: its samples whose closest point is on the target's boundary are left out.
+    /// The mesh reaches beyond the target: its samples whose closest point is on the target's boundary are left out, and
+    /// so are pairs that oppose each other, and samples whose closest point belongs to another place of the mesh.
     pub mesh_exceeds: bool,
 }
 
@@ -98,6 +100,7 @@ pub struct SurfaceMatcher<'a> {
     by_face: TriangleSampler,
     hints: Hints,
     hard: HardPlaces,
+    attraction: Option<VertexData<f64>>,
 }
 
 impl<'a> SurfaceMatcher<'a> {
@@ -118,7 +121,15 @@ impl<'a> SurfaceMatcher<'a> {
             by_face: TriangleSampler::new(std::iter::repeat_n(1.0, triangulation.len())),
             hints: Hints::default(),
             hard: HardPlaces::new(triangulation, x.len(), target),
+            attraction: None,
         }
+    }
+
+    /// From now on pairs count by the attraction of their place on the mesh, 0..=1 for each vertex, and not at all where
+    /// it is 0.
+    pub fn set_attraction(&mut self, attraction: &VertexData<f64>) {
+        let is_even = attraction.iter().all(|&a| a == 1.0);
+        self.attraction = (!is_even).then(|| attraction.clone());
     }
 
     /// How much of each surface lies beyond the other, as a share of `n_samples` random places on each: their closest
@@ -180,8 +191,10 @@ impl<'a> SurfaceMatcher<'a> {
             x,
             target: self.target,
             frame: self.frame,
+            bvh: &self.bvh,
             fans: &self.fans,
             boundary: &self.boundary,
+            attraction: self.attraction.as_ref(),
             config,
         };
         let (hints, hard) = (&mut self.hints, &mut self.hard);
@@ -189,13 +202,13 @@ impl<'a> SurfaceMatcher<'a> {
             side.match_places(&places, &mut hints.of_places)
         });
         let to_mesh = profile.time("closest on mesh", || {
-            side.match_samples(&samples, &self.bvh, &mut hints.of_samples)
+            side.match_samples(&samples, &mut hints.of_samples)
         });
         Matches {
             to_target: to_target.into_iter().flatten().collect(),
             to_mesh: to_mesh.into_iter().flatten().collect(),
             hard_to_target: profile.time("worst places", || hard.match_mesh(&side, rng)),
-            hard_to_mesh: profile.time("worst places", || hard.match_target(&self.bvh, &side, rng)),
+            hard_to_mesh: profile.time("worst places", || hard.match_target(&side, rng)),
         }
     }
 
@@ -220,164 +233,4 @@ impl<'a> SurfaceMatcher<'a> {
 struct Hints {
     of_places: Vec<u32>,
     of_samples: Vec<u32>,
-}
-
-/// A row that no shape has.
-pub(crate) const NO_HINT: u32 = u32::MAX;
-
-/// What both directions of one resampling need.
-pub(crate) struct Side<'a> {
-    triangulation: &'a Triangulation,
-    pub(crate) x: &'a Positions,
-    pub(crate) target: &'a dyn TargetSurface,
-    frame: UnitFrame,
-    fans: &'a TriangleFans,
-    boundary: &'a Boundary,
-    pub(crate) config: &'a SamplingConfig,
-}
-
-/// So many queries are one piece of parallel work.
-const CHUNK: usize = 256;
-
-impl Side<'_> {
-    /// The closest point of the target to each place of the mesh; none beyond the target.
-    ///
-    /// `hints` has a row of the target for each place, and holds afterwards the rows that were hit.
-    pub(crate) fn match_places(
-        &self,
-        places: &[TrianglePlace],
-        hints: &mut [u32],
-    ) -> Vec<Option<SurfaceMatch>> {
-        let queries = places.par_iter().zip(hints).with_min_len(CHUNK);
-        let pairs = queries.map(|(&(t, w), hint)| {
-            let [a, b, c] = self.triangulation.triangles()[t].map(|v| self.x[v].coords);
-            let place = Point3::from(a * w[0] + b * w[1] + c * w[2]);
-            let query = self.frame.from_unit(&place);
-            let hit = self.target.closest_point_from(&query, *hint);
-            *hint = hit.location.row();
-
-            let is_on_rim = self.target.is_on_boundary(&hit.location);
-            let pair = self.pair(t, w, self.frame.to_unit(&hit.point), &hit.location);
-            (!(is_on_rim && self.config.overlap.mesh_exceeds))
-                .then_some(SurfaceMatch { is_on_rim, ..pair })
-        });
-        pairs.collect()
-    }
-
-    /// The closest place of the mesh to each sample of the target; none beyond the mesh.
-    ///
-    /// `hints` has a triangle of the mesh for each sample, and holds afterwards those that were hit.
-    pub(crate) fn match_samples(
-        &self,
-        samples: &[SurfaceSample],
-        bvh: &TriangleBvh,
-        hints: &mut [u32],
-    ) -> Vec<Option<SurfaceMatch>> {
-        let queries = samples.par_iter().zip(hints).with_min_len(CHUNK);
-        let pairs = queries.map(|(sample, hint)| {
-            let point = self.frame.to_unit(&sample.point);
-            let Location::Triangle { index, barycentric } =
-                bvh.closest_point_from(&point, *hint)?.location
-            else {
-                return None;
-            };
-            *hint = index;
-
-            let t = index as usize;
-            let is_on_rim = self.boundary.holds(t, barycentric);
-            let mut pair = self.pair(t, barycentric, point, &sample.location);
-            if is_on_side(&barycentric) {
-                pair.normal = None;
-            }
-            (!(is_on_rim && self.config.overlap.target_exceeds))
-                .then_some(SurfaceMatch { is_on_rim, ..pair })
-        });
-        pairs.collect()
-    }
-
-    /// Unit normal of the mesh at a place, a mean where triangles meet.
-    fn own_normal(&self, t: usize, barycentric: &[f64; 3]) -> Option<Vector3> {
-        let triangles = self.triangulation.triangles();
-        let corners = |row: u32| triangles[row as usize].map(|v| self.x[v]);
-        let normal = |row: u32| triangle_normal(corners(row));
-        self.fans
-            .normal(t as u32, barycentric, true, corners, normal)
-    }
-
-    fn pair(&self, t: usize, barycentric: [f64; 3], point: Point3, at: &Location) -> SurfaceMatch {
-        let own = self.own_normal(t, &barycentric);
-        let mut normal = self.target.normal(at);
-        if let (NormalSign::Unoriented, Some(n), Some(m)) =
-            (self.target.normal_sign(), normal.as_mut(), own)
-        {
-            if n.dot(&m) < 0.0 {
-                *n = -*n;
-            }
-        }
-        let agreement = own.zip(normal).map_or(0.0, |(n, m)| n.dot(&m));
-        SurfaceMatch {
-            triangle: self.triangulation.triangles()[t],
-            barycentric,
-            point,
-            normal,
-            weight: match self.config.normal_bias {
-                Some(bias) => (agreement + bias).clamp(0.05, 1.0),
-                None => 1.0,
-            },
-            is_on_rim: false,
-        }
-    }
-}
-
-/// The open boundary of the mesh.
-struct Boundary {
-    triangles: Vec<[VertexId; 3]>,
-    is_vertex: VertexData<bool>,
-    /// Whether the side opposite to each corner belongs to no other triangle.
-    is_side: Vec<[bool; 3]>,
-}
-
-impl Boundary {
-    fn new(triangulation: &Triangulation, n_vertices: usize) -> Self {
-        let triangles = triangulation.triangles().to_vec();
-        let side = |t: &[VertexId; 3], k: usize| {
-            let (a, b) = (t[(k + 1) % 3], t[(k + 2) % 3]);
-            (a.min(b), a.max(b))
-        };
-        let mut sides: Vec<_> = triangles
-            .iter()
-            .flat_map(|t| [0, 1, 2].map(|k| side(t, k)))
-            .collect();
-        sides.sort_unstable();
-        let is_single = |s: &(VertexId, VertexId)| {
-            let first = sides.partition_point(|other| other < s);
-            sides.get(first + 1) != Some(s)
-        };
-        let is_side: Vec<[bool; 3]> = triangles
-            .iter()
-            .map(|t| [0, 1, 2].map(|k| is_single(&side(t, k))))
-            .collect();
-        let mut is_vertex = VertexData::new(n_vertices, false);
-        for (t, open) in triangles.iter().zip(&is_side) {
-            for k in (0..3).filter(|&k| open[k]) {
-                is_vertex[t[(k + 1) % 3]] = true;
-                is_vertex[t[(k + 2) % 3]] = true;
-            }
-        }
-        Self {
-            triangles,
-            is_vertex,
-            is_side,
-        }
-    }
-
-    /// Whether the place in triangle `t` lies on the boundary.
-    fn holds(&self, t: usize, barycentric: [f64; 3]) -> bool {
-        (0..3).any(|k| {
-            let is_on_side = self.is_side[t][k] && barycentric[k] <= ON_SIDE;
-            let is_on_corner =
-                self.is_vertex[self.triangles[t][k]] && barycentric[k] >= 1.0 - ON_SIDE;
-            is_on_side || is_on_corner
-        })
-    }
 }

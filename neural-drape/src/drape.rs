@@ -101,6 +101,7 @@ impl<'a> Drape<'a> {
             &none,
             &is_uncovered,
         );
+        matcher.set_attraction(guidance.attraction());
         let mut drape = Self {
             beyond,
             overlap,
@@ -151,14 +152,7 @@ impl<'a> Drape<'a> {
         let matches = self
             .matcher
             .resample(x, &sampling, &mut self.rng, &mut self.profile);
-        let matches = self.profile.time("regions", || {
-            self.guidance.weighted(
-                matches,
-                self.input.triangulation,
-                x,
-                self.overlap.mesh_exceeds,
-            )
-        });
+        self.guidance.note(&matches, self.overlap);
 
         let mut terms = self.add_distance_terms(&matches, &weights);
         if self.config.descent == Descent::Alternating {
@@ -203,6 +197,7 @@ impl<'a> Drape<'a> {
             regions,
             &self.is_uncovered,
         );
+        self.matcher.set_attraction(self.guidance.attraction());
         self.settle()
     }
 

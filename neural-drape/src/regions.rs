@@ -1,10 +1,7 @@
 //! Parts of the source that are not draped like the rest: free ones, rigid ones, and those the target lacks.
 
-use mesh_core::measure::triangle_normal;
-use mesh_core::{
-    nearest_rotation, Positions, TriangleBvh, Triangulation, Vector3, VertexData, VertexId,
-};
-use mesh_loss::{Matches, SurfaceMatch};
+use mesh_core::{nearest_rotation, Positions, Triangulation, Vector3, VertexData, VertexId};
+use mesh_loss::{Matches, Overlap};
 use mesh_operators::{
     bilaplacian, cotan_laplacian, voronoi_mass, FixedSolve, FixedSolveScratch, SpaceExtension,
 };
@@ -14,8 +11,6 @@ use crate::DrapeError;
 
 /// A field that carries pieces has at most this many centres.
 const MAX_CENTRES: usize = 500;
-/// Pairs whose attraction is below this do not count.
-const LEAST_ATTRACTION: f64 = 1e-6;
 
 /// How each vertex of the source is treated.
 #[derive(Clone, Debug, PartialEq)]
@@ -66,10 +61,6 @@ impl Regions {
 
 /// A vertex with fewer pairs than this share of what its area makes expect has no counterpart for now.
 const FEW_PAIRS: f64 = 0.2;
-/// With a target that is only a part, a sample of the mesh counts if the way to the target and back ends no farther from
-/// it than this share of the way there, and a hundredth of the longest side.
-const MUTUAL: f64 = 0.7;
-const MUTUAL_NEAR: f64 = 0.01;
 
 /// The regions of one drape, ready to be applied. Coordinates are those of the unit frame.
 pub(crate) struct Guidance {
@@ -83,8 +74,6 @@ pub(crate) struct Guidance {
     is_trivial: bool,
     /// Weight of the pairs of each vertex since pieces were last carried.
     pairs: VertexData<f64>,
-    /// The mesh where it was last asked for mutual pairs.
-    bvh: Option<TriangleBvh>,
 }
 
 /// Who follows the rest in one correction.
@@ -157,7 +146,6 @@ impl Guidance {
             led,
             initial: initial.clone(),
             pairs: VertexData::new(n, 0.0),
-            bvh: None,
         }
     }
 
@@ -166,46 +154,16 @@ impl Guidance {
         &self.attraction
     }
 
-    /// The pairs that count, by how much; with a target that is only a part, also without the places of the mesh that
-    /// it does not cover.
-    ///
-    /// The back of a leg that was scanned from the front is near the scan. Its normal is opposed, or the closest place to
-    /// its closest point is on the front.
-    pub(crate) fn weighted(
-        &mut self,
-        mut matches: Matches,
-        triangulation: &Triangulation,
-        x: &Positions,
-        target_is_part: bool,
-    ) -> Matches {
-        if target_is_part {
-            matches.to_target.retain(|m| !is_opposed(m, x));
-            let corners = || triangulation.corners(x);
-            match &mut self.bvh {
-                Some(bvh) => bvh.refit(corners()),
-                None => self.bvh = Some(TriangleBvh::new(corners().collect())),
-            }
-            if let Some(bvh) = &self.bvh {
-                keep_mutual(&mut matches.to_target, bvh, x);
+    /// Notes which vertices have pairs, for [`Follow::All`]; where both shapes are whole, all have.
+    pub(crate) fn note(&mut self, matches: &Matches, overlap: Overlap) {
+        if self.is_trivial && !overlap.mesh_exceeds {
+            return;
+        }
+        for m in matches.to_target.iter().chain(&matches.to_mesh) {
+            for (&v, w) in m.triangle.iter().zip(m.barycentric) {
+                self.pairs[v] += w;
             }
         }
-        if !self.is_trivial {
-            for way in [&mut matches.to_target, &mut matches.to_mesh] {
-                for m in way.iter_mut() {
-                    let corners = m.triangle.iter().zip(m.barycentric);
-                    m.weight *= corners.map(|(&v, w)| self.attraction[v] * w).sum::<f64>();
-                }
-                way.retain(|m| m.weight > LEAST_ATTRACTION);
-            }
-        }
-        if target_is_part || !self.is_trivial {
-            for m in matches.to_target.iter().chain(&matches.to_mesh) {
-                for (&v, w) in m.triangle.iter().zip(m.barycentric) {
-                    self.pairs[v] += w;
-                }
-            }
-        }
-        matches
     }
 
     /// What each vertex of a body or a carried piece must move by to be where it belongs; none where nothing must.
@@ -297,25 +255,6 @@ impl Guidance {
             x[v] = self.initial[v] + moves[v.index()];
         }
     }
-}
-
-/// Keeps the pairs whose target point has its closest place on the mesh near their own.
-fn keep_mutual(matches: &mut Vec<SurfaceMatch>, bvh: &TriangleBvh, x: &Positions) {
-    let points: Vec<_> = matches.iter().map(|m| m.point).collect();
-    let back = bvh.closest_points(&points);
-    let mut back = back.iter();
-    matches.retain(|m| {
-        let offset = m.offset(x);
-        let start = m.point + offset;
-        back.next()
-            .is_some_and(|b| (b.point - start).norm() <= MUTUAL * offset.norm() + MUTUAL_NEAR)
-    });
-}
-
-/// Whether the mesh and the target turn their backs on each other.
-fn is_opposed(m: &SurfaceMatch, x: &Positions) -> bool {
-    let own = triangle_normal(m.triangle.map(|v| x[v]));
-    own.zip(m.normal).is_some_and(|(a, b)| a.dot(&b) < 0.0)
 }
 
 impl Body {
