@@ -6,7 +6,7 @@ use crate::{DrapeConfig, LearningRate, ParametrizationConfig, Stage};
 const STEP: f64 = 0.3;
 
 impl DrapeConfig {
-    /// The end of this run over again in `n_iterations`: its last weights, its finest steps, which get smaller all the
+    /// The end of this run over again in `n_iterations`: its last weights and samples, its finest steps, which get smaller all the
     /// way. For a start that a coarse mesh has draped ([`mesh_core::Proxy`]).
     #[must_use]
     pub fn refining(&self, n_iterations: usize) -> Self {
@@ -23,6 +23,8 @@ impl DrapeConfig {
             warm_up: 0,
             decay: 1.0,
         };
+        config.sampling.n_samples = self.sampling.max_samples.max(self.sampling.n_samples);
+        config.sampling.double_every = None;
         if let ParametrizationConfig::Vertices(vertices) = &mut config.parametrization {
             vertices.smoothing_start = vertices.smoothing_end;
             vertices.n_levels = 1;
@@ -45,6 +47,7 @@ mod tests {
         };
         assert_eq!((stage.n_iterations, stage.from), (40, stage.to));
         assert_eq!(run.stages.last().map(|s| s.to), Some(stage.to));
+        assert_eq!(refinement.sampling.n_samples, run.sampling.max_samples);
         assert!(refinement.learning_rate.at(0, 40) < run.learning_rate.peak);
     }
 }
