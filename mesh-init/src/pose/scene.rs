@@ -1,14 +1,13 @@
 //! Two surfaces that are brought nearest to each other by closest-point iteration.
 
-use mesh_core::sampling::{TrianglePlace, TriangleSampler};
-use mesh_core::{
-    Location, NormalSign, Positions, TargetSurface, TriangleBvh, Triangulation, UnitFrame, Vector3,
-};
+use mesh_core::{NormalSign, Positions, TriangleBvh, UnitFrame, Vector3};
 use nalgebra::{Matrix3, SymmetricEigen};
-use rand::seq::SliceRandom;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
+use super::side::{
+    in_discs, sample_source, sample_target, Detail, Place, Side, Surface, LARGE, N_DISCS,
+};
 use super::PoseInput;
 use crate::affine::{least_squares, PointPair, WeightedPair};
 
@@ -40,6 +39,11 @@ impl Candidate {
         }
     }
 
+    /// Whether both are the same map, to the bit.
+    fn is_at(&self, other: &Self) -> bool {
+        self.linear == other.linear && self.shift == other.shift
+    }
+
     /// The angle between the rotations of two maps, in radians.
     pub(super) fn angle_to(&self, other: &Self) -> f64 {
         let [a, b] = [self, other].map(|c| mesh_core::nearest_rotation(&c.linear));
@@ -53,19 +57,20 @@ impl Candidate {
     }
 }
 
-/// A place with its normal, where there is one.
-#[derive(Clone, Copy)]
-struct Place {
-    point: Vector3,
-    normal: Option<Vector3>,
+/// Where the closest point to each sample was found last, so that it is found sooner.
+#[derive(Default)]
+struct Hits {
+    /// Rows of the target, for samples of the source, and of the source, for samples of the target.
+    target: Vec<u32>,
+    source: Vec<u32>,
 }
 
 /// Both surfaces and their samples, in boxes of longest side 1. Samples come shuffled, so that the first few are spread
 /// over all of a surface.
 pub(super) struct Scene<'a> {
-    target: &'a dyn TargetSurface,
+    target: Side<'a>,
     frames: [UnitFrame; 2],
-    source_bvh: TriangleBvh,
+    from: Side<'a>,
     source: Vec<Place>,
     samples: Vec<Place>,
     landmarks: Vec<[Vector3; 2]>,
@@ -90,23 +95,33 @@ impl<'a> Scene<'a> {
         let frames = bounds.map(UnitFrame::of);
         let unit: Positions = input.rest.map(|p| frames[0].to_unit(p));
         let mut rng = ChaCha8Rng::seed_from_u64(input.seed);
-        let source = sample_source(input.triangulation, &unit, &mut rng);
-        let mut samples = input.target.sample(N_FINE, &mut rng);
-        samples.shuffle(&mut rng);
-        let place = |s: &mesh_core::SurfaceSample| Place {
-            point: frames[1].to_unit(&s.point).coords,
-            normal: input.target.normal(&s.location),
-        };
+        let source = sample_source(input.triangulation, &unit, N_FINE, &mut rng);
+        let samples = sample_target(input.target, &frames[1], N_FINE, &mut rng);
         let in_units = |p: &PointPair| {
             [
                 frames[0].to_unit(&p.source).coords,
                 frames[1].to_unit(&p.target).coords,
             ]
         };
+        let triangles = input.triangulation;
+        let is_large = [triangles.len(), input.target.vertices().len()].map(|n| n > LARGE);
+        let discs = [
+            is_large[0].then(|| sample_source(triangles, &unit, N_DISCS, &mut rng)),
+            is_large[1].then(|| sample_target(input.target, &frames[1], N_DISCS, &mut rng)),
+        ];
+        let [of_source, of_target] = discs.map(|places| places.and_then(|p| in_discs(&p)));
         Some(Self {
-            target: input.target,
-            source_bvh: TriangleBvh::new(input.triangulation.corners(&unit).collect()),
-            samples: samples.iter().map(place).collect(),
+            target: Side {
+                surface: Surface::Target(input.target, frames[1]),
+                discs: of_target,
+            },
+            from: Side {
+                surface: Surface::Source(TriangleBvh::new(
+                    input.triangulation.corners(&unit).collect(),
+                )),
+                discs: of_source,
+            },
+            samples,
             landmarks: input.landmarks.iter().map(in_units).collect(),
             is_oriented: input.target.normal_sign() == NormalSign::Oriented,
             source,
@@ -133,32 +148,52 @@ impl<'a> Scene<'a> {
     }
 
     /// Closest-point iteration over similarities.
-    pub(super) fn refined(&self, mut at: Candidate, n_steps: usize, n_samples: usize) -> Candidate {
-        for _ in 0..n_steps {
-            let (matched, _) = self.trimmed(&at, n_samples);
-            if let Some(next) = self.fitted(&matched, f64::INFINITY) {
-                at = next;
-            }
-        }
-        at.cost = self.trimmed(&at, n_samples).1;
-        at
+    pub(super) fn refined(&self, at: Candidate, n_steps: usize, n_samples: usize) -> Candidate {
+        self.iterated(at, n_steps, n_samples, f64::INFINITY)
     }
 
     /// Closest-point iteration over affine maps, where it lowers the cost.
     pub(super) fn stretched(&self, best: Candidate, n_steps: usize) -> Candidate {
-        let mut at = best.clone();
-        for _ in 0..n_steps {
-            let (matched, _) = self.trimmed(&at, N_FINE);
-            if let Some(next) = self.fitted(&matched, AFFINE_PRIOR) {
-                at = next;
-            }
-        }
-        at.cost = self.trimmed(&at, N_FINE).1;
+        let at = self.iterated(best.clone(), n_steps, N_FINE, AFFINE_PRIOR);
         if at.cost < best.cost && at.linear.determinant() > 0.0 {
             at
         } else {
             best
         }
+    }
+
+    /// With the cost that the surfaces themselves give it, where discs stood for them.
+    pub(super) fn judged(&self, mut at: Candidate) -> Candidate {
+        if self.from.discs.is_some() || self.target.discs.is_some() {
+            let mut hits = Hits::default();
+            at.cost = self.trimmed(&at, N_FINE, &mut hits, Detail::Exact).1;
+        }
+        at
+    }
+
+    /// At most `n_steps` of closest-point iteration, drawn to a similarity by `prior`, until nothing moves any more.
+    fn iterated(
+        &self,
+        mut at: Candidate,
+        n_steps: usize,
+        n_samples: usize,
+        prior: f64,
+    ) -> Candidate {
+        let mut hits = Hits::default();
+        for _ in 0..n_steps {
+            let (matched, _) = self.trimmed(&at, n_samples, &mut hits, Detail::Discs);
+            let Some(next) = self.fitted(&matched, prior) else {
+                // From here on every step would be this one.
+                break;
+            };
+            let is_settled = next.is_at(&at);
+            at = next;
+            if is_settled {
+                break;
+            }
+        }
+        at.cost = self.trimmed(&at, n_samples, &mut hits, Detail::Discs).1;
+        at
     }
 
     fn fitted(&self, matched: &[Matched], prior: f64) -> Option<Candidate> {
@@ -182,40 +217,38 @@ impl<'a> Scene<'a> {
         })
     }
 
-    /// The nearer pairs of both directions, and the mean of their costs.
-    fn trimmed(&self, at: &Candidate, n: usize) -> (Vec<Matched>, f64) {
+    /// The nearer pairs of both directions, and the mean of their costs. `hits` are those of nearly the same map.
+    fn trimmed(
+        &self,
+        at: &Candidate,
+        n: usize,
+        hits: &mut Hits,
+        detail: Detail,
+    ) -> (Vec<Matched>, f64) {
         let Some(back) = at.linear.try_inverse() else {
             return (Vec::new(), f64::INFINITY);
         };
         let scale = at.linear.determinant().abs().cbrt();
-        let forth = self.source.iter().take(n).map(|s| {
+        hits.target.resize(n, u32::MAX);
+        hits.source.resize(n, u32::MAX);
+        let forth = self.source.iter().zip(&mut hits.target);
+        let forth = forth.filter_map(|(s, hint)| {
             let moved = at.linear * s.point + at.shift;
-            let hit = self
-                .target
-                .closest_point(&self.frames[1].from_unit(&moved.into()));
-            let point = self.frames[1].to_unit(&hit.point).coords;
-            let normals = [
-                s.normal.map(|n| at.linear * n),
-                self.target.normal(&hit.location),
-            ];
-            Matched {
-                pair: [s.point, point],
-                cost: (moved - point).norm() + self.opposed(normals),
-            }
-        });
-        let to_source = self.samples.iter().take(n).filter_map(|t| {
-            let moved = back * (t.point - at.shift);
-            let hit = self.source_bvh.closest_point(&moved.into())?;
-            let normal = match hit.location {
-                Location::Triangle { index, .. } => {
-                    mesh_core::measure::triangle_normal(self.source_bvh.triangle(index))
-                }
-                Location::Point { .. } => None,
-            };
-            let normals = [normal.map(|n| at.linear * n), t.normal];
+            let hit = self.target.closest(&moved, hint, detail)?;
+            let normals = [s.normal.map(|n| at.linear * n), hit.normal];
             Some(Matched {
-                pair: [hit.point.coords, t.point],
-                cost: (moved - hit.point.coords).norm() * scale + self.opposed(normals),
+                pair: [s.point, hit.point],
+                cost: (moved - hit.point).norm() + self.opposed(normals),
+            })
+        });
+        let to_source = self.samples.iter().zip(&mut hits.source);
+        let to_source = to_source.filter_map(|(t, hint)| {
+            let moved = back * (t.point - at.shift);
+            let hit = self.from.closest(&moved, hint, detail)?;
+            let normals = [hit.normal.map(|n| at.linear * n), t.normal];
+            Some(Matched {
+                pair: [hit.point, t.point],
+                cost: (moved - hit.point).norm() * scale + self.opposed(normals),
             })
         });
         let (mut all, mut cost) = (Vec::with_capacity(2 * n), 0.0);
@@ -308,22 +341,4 @@ fn axis_rotations() -> Vec<Matrix3<f64>> {
         }
     }
     rotations
-}
-
-/// Random places of the source, uniform by area.
-fn sample_source(triangulation: &Triangulation, x: &Positions, rng: &mut ChaCha8Rng) -> Vec<Place> {
-    let areas = triangulation
-        .corners(x)
-        .map(mesh_core::measure::triangle_area);
-    let places = TriangleSampler::new(areas).sample(N_FINE, rng);
-    let place = |(t, w): TrianglePlace| {
-        let corners = triangulation.triangles()[t].map(|v| x[v]);
-        Place {
-            point: corners.iter().zip(w).map(|(p, w)| p.coords * w).sum(),
-            normal: mesh_core::measure::triangle_normal(corners),
-        }
-    };
-    let mut source: Vec<Place> = places.into_iter().map(place).collect();
-    source.shuffle(rng);
-    source
 }
