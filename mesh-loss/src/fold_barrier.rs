@@ -1,7 +1,7 @@
 //! No edge folds over.
 
 use mesh_core::measure::triangle_normal;
-use mesh_core::{Positions, Triangulation, TriangulationEdge, Vector3, VertexData};
+use mesh_core::{Positions, Triangulation, TriangulationEdge, Vector3, VertexData, VertexId};
 
 use crate::gradient::pull_back_normal;
 use crate::Loss;
@@ -37,19 +37,50 @@ impl<'a> FoldBarrier<'a> {
             limits,
         }
     }
-}
 
-impl Loss for FoldBarrier<'_> {
-    fn accumulate(&self, x: &Positions, weight: f64, grad: &mut VertexData<Vector3>) -> f64 {
+    /// Rows of the edges at the triangles of these vertices, given in ascending order: the gradient there depends on no
+    /// others.
+    pub fn edges_near(&self, vertices: &[VertexId]) -> Vec<usize> {
+        let is_near = |e: &TriangulationEdge| {
+            let corners = e.triangles.map(|t| self.triangulation.triangles()[t]);
+            corners
+                .as_flattened()
+                .iter()
+                .any(|v| vertices.binary_search(v).is_ok())
+        };
+        (0..self.edges.len())
+            .filter(|&row| is_near(&self.edges[row]))
+            .collect()
+    }
+
+    /// [`Loss::accumulate`] of these edges alone.
+    pub fn accumulate_edges(
+        &self,
+        rows: &[usize],
+        x: &Positions,
+        weight: f64,
+        grad: &mut VertexData<Vector3>,
+    ) -> f64 {
+        let normal = |t: usize| triangle_normal(self.triangulation.triangles()[t].map(|v| x[v]));
+        self.accumulate_with(normal, rows.iter().copied(), x, weight, grad)
+    }
+
+    fn accumulate_with(
+        &self,
+        normal: impl Fn(usize) -> Option<Vector3>,
+        rows: impl Iterator<Item = usize>,
+        x: &Positions,
+        weight: f64,
+        grad: &mut VertexData<Vector3>,
+    ) -> f64 {
         let share = 3.0 / x.len().max(1) as f64;
-        let normals = normals(self.triangulation, x);
         let mut sum = 0.0;
-        for (edge, limit) in self.edges.iter().zip(&self.limits) {
-            let [one, two] = edge.triangles;
-            let Some((n, m)) = normals[one].zip(normals[two]) else {
+        for row in rows {
+            let [one, two] = self.edges[row].triangles;
+            let Some((n, m)) = normal(one).zip(normal(two)) else {
                 continue;
             };
-            let excess = limit - n.dot(&m);
+            let excess = self.limits[row] - n.dot(&m);
             if excess <= 0.0 {
                 continue;
             }
@@ -67,6 +98,41 @@ impl Loss for FoldBarrier<'_> {
     }
 }
 
+impl Loss for FoldBarrier<'_> {
+    fn accumulate(&self, x: &Positions, weight: f64, grad: &mut VertexData<Vector3>) -> f64 {
+        let normals = normals(self.triangulation, x);
+        self.accumulate_with(|t| normals[t], 0..self.edges.len(), x, weight, grad)
+    }
+}
+
 fn normals(triangulation: &Triangulation, x: &Positions) -> Vec<Option<Vector3>> {
     triangulation.corners(x).map(triangle_normal).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use mesh_core::{shapes, Triangulation, Vector3, VertexData, VertexId};
+
+    use super::*;
+
+    #[test]
+    fn edges_nearby_give_the_gradient_there_to_the_bit() {
+        let (mesh, rest) = shapes::quad_sphere(6).into_halfedge().unwrap();
+        let triangulation = Triangulation::new(&mesh, &rest);
+        let mut x = rest.clone();
+        for v in x.ids().step_by(3) {
+            x[v] *= 0.4;
+        }
+        let barrier = FoldBarrier::new(&triangulation, &rest, 0.3);
+        let near = [3, 30, 31, 100].map(VertexId::new);
+        let rows = barrier.edges_near(&near);
+        assert!(rows.len() < triangulation.interior_edges().len() / 4);
+
+        let mut all = VertexData::new(x.len(), Vector3::zeros());
+        let mut some = all.clone();
+        barrier.accumulate(&x, 0.7, &mut all);
+        barrier.accumulate_edges(&rows, &x, 0.7, &mut some);
+        assert!(near.iter().any(|&v| all[v] != Vector3::zeros()));
+        assert!(near.iter().all(|&v| all[v] == some[v]));
+    }
 }

@@ -1,17 +1,12 @@
 //! The last stage: no new fold, no new skinny triangle.
 
-use std::borrow::Cow;
+mod judge;
 
-use mesh_core::measure::{triangle_normal, triangle_quality};
-use mesh_core::{
-    Point3, Positions, Triangulation, TriangulationEdge, UnitFrame, Vector3, VertexData, VertexId,
-};
-use mesh_loss::{FoldBarrier, LocalShape, Loss};
+use mesh_core::{Point3, Positions, Triangulation, UnitFrame, Vector3, VertexData, VertexId};
+use mesh_loss::{FoldBarrier, LocalShape};
 
-/// An edge is folded when the normals of its triangles have a dot product below this.
-const FOLD_COSINE: f64 = -0.5;
-/// A triangle with Q_f (Eq. 4) below this is skinny.
-const SKINNY_QUALITY: f64 = 0.1;
+use judge::{Broken, Judge, Surroundings};
+
 /// A patch grows up to this many rings around what is broken.
 const MAX_RINGS: usize = 8;
 /// Each size of a patch is relaxed at most this often.
@@ -72,35 +67,41 @@ pub fn repair(
     held: &[VertexId],
 ) -> Repair {
     let judge = Judge::new(triangulation, rest);
-    let before = judge.defects(x);
+    let mut broken = judge.broken(x);
+    let before = judge.defects(&broken);
     let mut positions = x.clone();
-    let mut broken = judge.broken_vertices(x);
-    if !broken.is_empty() {
+    let vertices = judge.vertices(&broken);
+    if !vertices.is_empty() {
         let mender = Mender {
             judge: &judge,
+            surroundings: Surroundings::new(&judge, x.len()),
             shape: LocalShape::new(triangulation, rest),
-            barriers: judge.barriers(),
+            barriers: judge.barriers(UNBENT_COSINE),
             neighbours: triangulation.neighbours(x.len()),
             held,
             size: UnitFrame::principal(x.as_slice()).scale,
         };
-        let is_broken = |v: VertexId| broken.binary_search(&v).is_ok();
+        let is_broken = |v: VertexId| vertices.binary_search(&v).is_ok();
         for patch in triangulation.connected_groups(x.len(), is_broken) {
-            if let Some((mended, left)) = mender.mended(&positions, &patch, &broken) {
-                (positions, broken) = (mended, left);
+            if let Some(mended) = mender.mended(&positions, &patch, &broken) {
+                (positions, broken) = mended;
             }
         }
     }
     Repair {
-        left: judge.defects(&positions),
+        left: judge.defects(&broken),
         before,
         positions,
     }
 }
 
-/// Mends patches, one at a time.
+/// One of the ways to mend: it changes the positions of the free vertices, turn by turn.
+type Change<'c> = &'c mut dyn FnMut(&mut Positions, &[VertexId], usize);
+
+/// Mends patches, one at a time. What moves and what that can break or mend is looked at, nothing else.
 struct Mender<'a> {
     judge: &'a Judge<'a>,
+    surroundings: Surroundings<'a>,
     shape: LocalShape,
     barriers: Vec<FoldBarrier<'a>>,
     neighbours: VertexData<Vec<VertexId>>,
@@ -114,49 +115,59 @@ impl Mender<'_> {
         &self,
         x: &Positions,
         patch: &[VertexId],
-        broken: &[VertexId],
-    ) -> Option<(Positions, Vec<VertexId>)> {
+        broken: &Broken,
+    ) -> Option<(Positions, Broken)> {
+        let vertices = self.judge.vertices(broken);
         let free = |rings: usize| {
             let mut free = self.grown(patch, rings);
             free.retain(|v| !self.held.contains(v));
             free
         };
-        let if_mended = |moved: &Positions, free: &[VertexId]| {
-            let left = self.judge.broken_vertices(moved);
-            let is_near = |v: &VertexId| (moved[*v] - x[*v]).norm() <= MAX_MOTION * self.size;
-            (is_mended(&left, broken, patch) && free.iter().all(is_near))
-                .then(|| (moved.clone(), left))
-        };
-        let unbent = || {
-            if self.judge.sharpest(x, patch) < JUST_FOLDED {
-                return None;
-            }
-            let (free, mut moved) = (free(UNBENDING_RINGS), x.clone());
-            (0..UNBENDINGS).find_map(|_| {
-                self.unbend(&mut moved, &free);
-                if_mended(&moved, &free)
+        // The first of the shapes that `change` goes through in which the patch is mended by a small motion.
+        let mended = |free: &[VertexId], n: usize, change: Change<'_>| {
+            let reach = self.surroundings.reach(free);
+            let mut moved = x.clone();
+            (0..n).find_map(|turn| {
+                change(&mut moved, free, turn);
+                let left = self.judge.broken_after(broken, &moved, &reach);
+                let is_near = |v: &VertexId| (moved[*v] - x[*v]).norm() <= MAX_MOTION * self.size;
+                let is_done = is_mended(&self.judge.vertices(&left), &vertices, patch);
+                (is_done && free.iter().all(is_near)).then(|| (moved.clone(), left))
             })
         };
-        let relaxed = |rings: usize, n_flattenings: usize| {
-            let (free, mut moved) = (free(rings), x.clone());
-            (0..n_flattenings).for_each(|_| self.flatten(&mut moved, &free));
-            (0..SWEEPS).find_map(|_| {
-                self.shape.relax(&mut moved, &free);
-                if_mended(&moved, &free)
+        let unbent = || {
+            if self.surroundings.sharpest(x, patch) < JUST_FOLDED {
+                return None;
+            }
+            let free = free(UNBENDING_RINGS);
+            let edges: Vec<Vec<usize>> =
+                self.barriers.iter().map(|b| b.edges_near(&free)).collect();
+            mended(&free, UNBENDINGS, &mut |x, free, _| {
+                self.unbend(x, free, &edges);
+            })
+        };
+        let relaxed = |free: &[VertexId], n_flattenings: usize| {
+            mended(free, SWEEPS, &mut |x, free, turn| {
+                if turn == 0 {
+                    (0..n_flattenings).for_each(|_| self.flatten(x, free));
+                }
+                self.shape.relax(x, free);
             })
         };
         // A patch that turned over as a whole does not come back by itself; it is flattened first.
         unbent().or_else(|| {
-            (0..=MAX_RINGS)
-                .find_map(|rings| relaxed(rings, 0).or_else(|| relaxed(rings, FLATTENINGS)))
+            (0..=MAX_RINGS).find_map(|rings| {
+                let free = free(rings);
+                relaxed(&free, 0).or_else(|| relaxed(&free, FLATTENINGS))
+            })
         })
     }
 
-    /// Moves the vertices of `free` a little against the gradient of the fold barrier.
-    fn unbend(&self, x: &mut Positions, free: &[VertexId]) {
+    /// Moves the vertices of `free` a little against the gradient of the fold barrier, given the edges near them.
+    fn unbend(&self, x: &mut Positions, free: &[VertexId], edges: &[Vec<usize>]) {
         let mut gradient = VertexData::new(x.len(), Vector3::zeros());
-        for barrier in &self.barriers {
-            barrier.accumulate(x, 1.0, &mut gradient);
+        for (barrier, edges) in self.barriers.iter().zip(edges) {
+            barrier.accumulate_edges(edges, x, 1.0, &mut gradient);
         }
         let largest = free.iter().map(|&v| gradient[v].norm()).fold(0.0, f64::max);
         if largest > 0.0 {
@@ -193,126 +204,14 @@ impl Mender<'_> {
 
 /// What is broken at `x` that was not at rest.
 pub(crate) fn defects(triangulation: &Triangulation, rest: &Positions, x: &Positions) -> Defects {
-    Judge::new(triangulation, rest).defects(x)
+    let judge = Judge::new(triangulation, rest);
+    judge.defects(&judge.broken(x))
 }
 
 /// Nothing in the patch is broken any more, and nothing else is that was not.
 fn is_mended(left: &[VertexId], broken: &[VertexId], patch: &[VertexId]) -> bool {
     left.iter()
-        .all(|v| !patch.contains(v) && broken.contains(v))
-}
-
-/// Tells what is broken that was not at rest, however the polygons are cut.
-struct Judge<'a> {
-    rest: &'a Positions,
-    cuts: Vec<Cut<'a>>,
-}
-
-/// The polygons as triangles, and the edges that are not folded at rest.
-struct Cut<'a> {
-    triangulation: Cow<'a, Triangulation>,
-    edges: Vec<TriangulationEdge>,
-}
-
-impl<'a> Judge<'a> {
-    fn new(triangulation: &'a Triangulation, rest: &'a Positions) -> Self {
-        let simple = triangulation.simply_cut().map(Cow::Owned);
-        let cuts = std::iter::once(Cow::Borrowed(triangulation)).chain(simple);
-        Self {
-            rest,
-            cuts: cuts.map(|triangles| Cut::new(triangles, rest)).collect(),
-        }
-    }
-
-    fn defects(&self, x: &Positions) -> Defects {
-        let edges = self.cuts.iter().flat_map(|cut| cut.folds(x));
-        let mut folds: Vec<[VertexId; 2]> = edges.map(|e| e.vertices).collect();
-        folds.sort_unstable();
-        folds.dedup();
-        Defects {
-            folds,
-            skinny: self.cuts[0].skinny(self.rest, x),
-        }
-    }
-
-    /// The least cosine at an edge of the patch that was not folded at rest.
-    fn sharpest(&self, x: &Positions, patch: &[VertexId]) -> f64 {
-        let of_cut = |cut: &Cut<'_>| {
-            let normals = normals(&cut.triangulation, x);
-            let is_inside = |e: &&TriangulationEdge| e.vertices.iter().all(|v| patch.contains(v));
-            let edges = cut.edges.iter().filter(is_inside);
-            edges.map(|e| cosine(e, &normals)).fold(1.0, f64::min)
-        };
-        self.cuts.iter().map(of_cut).fold(1.0, f64::min)
-    }
-
-    /// What keeps edges from folding, in every cut.
-    fn barriers(&self) -> Vec<FoldBarrier<'_>> {
-        let barrier = |cut| FoldBarrier::new(cut, self.rest, UNBENT_COSINE);
-        self.cuts
-            .iter()
-            .map(|cut| barrier(&*cut.triangulation))
-            .collect()
-    }
-
-    /// Corners of all that is broken, in order.
-    fn broken_vertices(&self, x: &Positions) -> Vec<VertexId> {
-        let corners = |cut: &Cut<'_>| {
-            let triangles = cut.triangulation.triangles();
-            let folded = cut.folds(x).flat_map(|e| e.triangles);
-            let rows = folded.chain(cut.skinny(self.rest, x));
-            rows.flat_map(|t| triangles[t]).collect::<Vec<VertexId>>()
-        };
-        let mut vertices: Vec<VertexId> = self.cuts.iter().flat_map(corners).collect();
-        vertices.sort_unstable();
-        vertices.dedup();
-        vertices
-    }
-}
-
-impl<'a> Cut<'a> {
-    fn new(triangulation: Cow<'a, Triangulation>, rest: &Positions) -> Self {
-        let normals = normals(&triangulation, rest);
-        let mut edges = triangulation.interior_edges();
-        edges.retain(|e| !is_folded(e, &normals));
-        Self {
-            triangulation,
-            edges,
-        }
-    }
-
-    fn folds(&self, x: &Positions) -> impl Iterator<Item = &TriangulationEdge> {
-        let normals = normals(&self.triangulation, x);
-        self.edges.iter().filter(move |e| is_folded(e, &normals))
-    }
-
-    fn skinny(&self, rest: &Positions, x: &Positions) -> Vec<usize> {
-        let [before, after] = [rest, x].map(|x| self.triangulation.corners(x));
-        let is_skinny = |corners| triangle_quality(corners) < SKINNY_QUALITY;
-        before
-            .zip(after)
-            .enumerate()
-            .filter(|&(_, (before, after))| is_skinny(after) && !is_skinny(before))
-            .map(|(t, _)| t)
-            .collect()
-    }
-}
-
-fn normals(triangulation: &Triangulation, x: &Positions) -> Vec<Vector3> {
-    triangulation
-        .corners(x)
-        .map(|corners| triangle_normal(corners).unwrap_or_default())
-        .collect()
-}
-
-fn is_folded(edge: &TriangulationEdge, normals: &[Vector3]) -> bool {
-    cosine(edge, normals) < FOLD_COSINE
-}
-
-/// Cosine between the normals of an edge's triangles.
-fn cosine(edge: &TriangulationEdge, normals: &[Vector3]) -> f64 {
-    let [one, two] = edge.triangles.map(|t| normals[t]);
-    one.dot(&two)
+        .all(|v| patch.binary_search(v).is_err() && broken.binary_search(v).is_ok())
 }
 
 #[cfg(test)]
@@ -365,26 +264,5 @@ mod tests {
         let repair = repair(&triangulation, &rest, &x, &[]);
         assert!(!repair.before.is_empty());
         assert!(repair.left.is_empty(), "{:?}", repair.left);
-    }
-
-    #[test]
-    fn polygons_that_simple_programs_cut_otherwise_are_judged_twice() {
-        let (mesh, rest) = shapes::open_grid(6, 6).into_halfedge().unwrap();
-        let triangulation = Triangulation::new(&mesh, &rest);
-        assert!(triangulation.simply_cut().is_none());
-        let judge = Judge::new(&triangulation, &rest);
-        assert_eq!(judge.cuts.len(), 1);
-
-        let kites = mesh_core::PolygonSoup {
-            positions: [[0., 0.], [1., 5.], [0., 0.5], [-1., 5.], [0., 9.]]
-                .map(|[x, y]| Point3::new(x, y, 0.0))
-                .to_vec(),
-            faces: vec![vec![0, 1, 2, 3], vec![1, 4, 3, 2]],
-        };
-        let (mesh, rest) = kites.into_halfedge().unwrap();
-        let triangulation = Triangulation::new(&mesh, &rest);
-        let judge = Judge::new(&triangulation, &rest);
-        assert_eq!(judge.cuts.len(), 2);
-        assert!(judge.defects(&rest).is_empty());
     }
 }
