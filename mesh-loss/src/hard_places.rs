@@ -1,7 +1,7 @@
 //! Corners that are far off, kept in mind from one iteration to the next.
 
 use mesh_core::sampling::TrianglePlace;
-use mesh_core::{Point3, Positions, SurfaceSample, TargetSurface, Triangulation};
+use mesh_core::{Location, Point3, Positions, SurfaceSample, TargetSurface, Triangulation};
 use rand::{Rng, RngCore};
 
 use crate::matching::SurfaceMatch;
@@ -22,8 +22,10 @@ pub struct HardCorners {
 pub(crate) struct HardPlaces {
     mesh_corners: Vec<TrianglePlace>,
     target_corners: Vec<Point3>,
-    /// What was hit last time: on the target from the mesh's corners, and from its own; on the mesh from the target's.
-    hints: [Vec<u32>; 3],
+    /// Where on the target its own corners are, as far as anybody asked.
+    own: Vec<Option<Location>>,
+    /// What was hit last time: on the target from the mesh's corners, on the mesh from the target's.
+    hints: [Vec<u32>; 2],
     kept: HardCorners,
 }
 
@@ -44,7 +46,8 @@ impl HardPlaces {
         let target_corners = target.vertices();
         let (n, m) = (mesh_corners.len(), target_corners.len());
         Self {
-            hints: [n, m, m].map(|n| vec![NO_HINT; n]),
+            own: vec![None; m],
+            hints: [n, m].map(|n| vec![NO_HINT; n]),
             mesh_corners,
             target_corners,
             kept: HardCorners::default(),
@@ -61,8 +64,8 @@ impl HardPlaces {
         let mut rows = std::mem::take(&mut self.kept.of_mesh);
         rows.extend(random_rows(n, self.mesh_corners.len(), rng));
         let places: Vec<TrianglePlace> = rows.iter().map(|&k| self.mesh_corners[k]).collect();
-        let pairs = with_hints(&rows, &mut self.hints[0], |hints| {
-            side.match_places(&places, hints)
+        let pairs = with_hints(&rows, &mut self.hints[0], |hints, pairs| {
+            side.match_places(&places, hints, pairs);
         });
         let (rows, pairs) = farthest(rows, pairs, side.x, n);
         self.kept.of_mesh = rows;
@@ -78,20 +81,17 @@ impl HardPlaces {
         let n = side.config.n_hard;
         let mut rows = std::mem::take(&mut self.kept.of_target);
         rows.extend(random_rows(n, self.target_corners.len(), rng));
-        let corners = &self.target_corners;
-        let samples: Vec<SurfaceSample> = with_hints(&rows, &mut self.hints[1], |hints| {
-            let of_row = |(&k, hint): (&usize, &mut u32)| {
-                let hit = side.target.closest_point_from(&corners[k], *hint);
-                *hint = hit.location.row();
-                SurfaceSample {
-                    point: corners[k],
-                    location: hit.location,
-                }
-            };
-            rows.iter().zip(hints).map(of_row).collect()
-        });
-        let pairs = with_hints(&rows, &mut self.hints[2], |hints| {
-            side.match_samples(&samples, hints)
+        let (corners, own) = (&self.target_corners, &mut self.own);
+        let sample = |&k: &usize| {
+            let find = || side.target.closest_point(&corners[k]).location;
+            SurfaceSample {
+                point: corners[k],
+                location: *own[k].get_or_insert_with(find),
+            }
+        };
+        let samples: Vec<SurfaceSample> = rows.iter().map(sample).collect();
+        let pairs = with_hints(&rows, &mut self.hints[1], |hints, pairs| {
+            side.match_samples(&samples, hints, pairs);
         });
         let (rows, pairs) = farthest(rows, pairs, side.x, n);
         self.kept.of_target = rows;
@@ -122,14 +122,19 @@ fn random_rows(n: usize, len: usize, rng: &mut dyn RngCore) -> impl Iterator<Ite
     (0..n).map(move |_| rng.random_range(0..len))
 }
 
-/// Lets `work` use and renew the hints of these rows.
-fn with_hints<R>(rows: &[usize], of_all: &mut [u32], work: impl FnOnce(&mut [u32]) -> R) -> R {
+/// The pairs that `work` finds; it uses and renews the hints of these rows.
+fn with_hints(
+    rows: &[usize],
+    of_all: &mut [u32],
+    work: impl FnOnce(&mut [u32], &mut Vec<Option<SurfaceMatch>>),
+) -> Vec<Option<SurfaceMatch>> {
     let mut hints: Vec<u32> = rows.iter().map(|&k| of_all[k]).collect();
-    let done = work(&mut hints);
+    let mut pairs = Vec::new();
+    work(&mut hints, &mut pairs);
     for (&k, hint) in rows.iter().zip(hints) {
         of_all[k] = hint;
     }
-    done
+    pairs
 }
 
 /// The `n` rows whose pairs are farthest off, the farthest first, each once.

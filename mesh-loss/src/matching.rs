@@ -101,6 +101,9 @@ pub struct SurfaceMatcher<'a> {
     hints: Hints,
     hard: HardPlaces,
     attraction: Option<VertexData<f64>>,
+    /// Room for pairs, some of which do not count, and for those that do: fresh pages cost a tenth of a resampling.
+    pairs: Vec<Option<SurfaceMatch>>,
+    used: Matches,
 }
 
 impl<'a> SurfaceMatcher<'a> {
@@ -122,6 +125,8 @@ impl<'a> SurfaceMatcher<'a> {
             hints: Hints::default(),
             hard: HardPlaces::new(triangulation, x.len(), target),
             attraction: None,
+            pairs: Vec::new(),
+            used: Matches::default(),
         }
     }
 
@@ -197,19 +202,31 @@ impl<'a> SurfaceMatcher<'a> {
             attraction: self.attraction.as_ref(),
             config,
         };
-        let (hints, hard) = (&mut self.hints, &mut self.hard);
-        let to_target = profile.time("closest on target", || {
-            side.match_places(&places, &mut hints.of_places)
+        let (hints, hard, pairs) = (&mut self.hints, &mut self.hard, &mut self.pairs);
+        let Matches {
+            mut to_target,
+            mut to_mesh,
+            ..
+        } = std::mem::take(&mut self.used);
+        profile.time("closest on target", || {
+            side.match_places(&places, &mut hints.of_places, pairs);
+            refill(&mut to_target, pairs);
         });
-        let to_mesh = profile.time("closest on mesh", || {
-            side.match_samples(&samples, &mut hints.of_samples)
+        profile.time("closest on mesh", || {
+            side.match_samples(&samples, &mut hints.of_samples, pairs);
+            refill(&mut to_mesh, pairs);
         });
         Matches {
-            to_target: to_target.into_iter().flatten().collect(),
-            to_mesh: to_mesh.into_iter().flatten().collect(),
+            to_target,
+            to_mesh,
             hard_to_target: profile.time("worst places", || hard.match_mesh(&side, rng)),
             hard_to_mesh: profile.time("worst places", || hard.match_target(&side, rng)),
         }
+    }
+
+    /// Takes matches that nobody needs any more: the next [`SurfaceMatcher::resample`] uses their room.
+    pub fn recycle(&mut self, used: Matches) {
+        self.used = used;
     }
 
     /// Random places on the mesh: some by area, some by face.
@@ -226,6 +243,12 @@ impl<'a> SurfaceMatcher<'a> {
         places.extend(TriangleSampler::new(areas).sample(n_by_area, rng));
         places
     }
+}
+
+/// Those of `pairs` that count, in order.
+fn refill(matches: &mut Vec<SurfaceMatch>, pairs: &[Option<SurfaceMatch>]) {
+    matches.clear();
+    matches.extend(pairs.iter().flatten());
 }
 
 /// What was hit last time: the k-th sample is always drawn near the same place, so it is close to what comes next.

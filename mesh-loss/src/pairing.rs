@@ -40,14 +40,16 @@ const CHUNK: usize = 256;
 impl Side<'_> {
     /// The closest point of the target to each place of the mesh; none beyond the target.
     ///
-    /// `hints` has a row of the target for each place, and holds afterwards the rows that were hit.
+    /// `hints` has a row of the target for each place, and holds afterwards the rows that were hit. What `pairs` held is
+    /// lost, its room used again.
     pub(crate) fn match_places(
         &self,
         places: &[TrianglePlace],
         hints: &mut [u32],
-    ) -> Vec<Option<SurfaceMatch>> {
+        pairs: &mut Vec<Option<SurfaceMatch>>,
+    ) {
         let queries = places.par_iter().zip(hints).with_min_len(CHUNK);
-        let pairs = queries.map(|(&(t, w), hint)| {
+        let found = queries.map(|(&(t, w), hint)| {
             let [a, b, c] = self.triangulation.triangles()[t].map(|v| self.x[v].coords);
             let place = Point3::from(a * w[0] + b * w[1] + c * w[2]);
             let query = self.frame.from_unit(&place);
@@ -62,19 +64,21 @@ impl Side<'_> {
             let is_lost = self.config.overlap.mesh_exceeds && !self.is_mutual(&place, &pair.point);
             (!is_lost).then_some(SurfaceMatch { is_on_rim, ..pair })
         });
-        pairs.collect()
+        found.collect_into_vec(pairs);
     }
 
     /// The closest place of the mesh to each sample of the target; none beyond the mesh.
     ///
-    /// `hints` has a triangle of the mesh for each sample, and holds afterwards those that were hit.
+    /// `hints` has a triangle of the mesh for each sample, and holds afterwards those that were hit. What `pairs` held is
+    /// lost, its room used again.
     pub(crate) fn match_samples(
         &self,
         samples: &[SurfaceSample],
         hints: &mut [u32],
-    ) -> Vec<Option<SurfaceMatch>> {
+        pairs: &mut Vec<Option<SurfaceMatch>>,
+    ) {
         let queries = samples.par_iter().zip(hints).with_min_len(CHUNK);
-        let pairs = queries.map(|(sample, hint)| {
+        let found = queries.map(|(sample, hint)| {
             let point = self.frame.to_unit(&sample.point);
             let Location::Triangle { index, barycentric } =
                 self.bvh.closest_point_from(&point, *hint)?.location
@@ -94,7 +98,7 @@ impl Side<'_> {
             }
             Some(SurfaceMatch { is_on_rim, ..pair })
         });
-        pairs.collect()
+        found.collect_into_vec(pairs);
     }
 
     /// Unit normal of the mesh at a place, a mean where triangles meet.

@@ -155,6 +155,7 @@ impl<'a> Drape<'a> {
         self.guidance.note(&matches, self.overlap);
 
         let mut terms = self.add_distance_terms(&matches, &weights);
+        self.matcher.recycle(matches);
         if self.config.descent == Descent::Alternating {
             self.descend(rate)?;
         }
