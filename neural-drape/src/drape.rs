@@ -205,17 +205,21 @@ impl<'a> Drape<'a> {
     /// Puts bodies and carried pieces where they belong.
     fn settle(&mut self) -> Result<(), DrapeError> {
         let period = (self.n_iterations / N_FOLLOWS).max(1);
-        let follow = if self.iteration >= self.n_iterations {
+        let is_end = self.iteration >= self.n_iterations;
+        let follow = if is_end && self.overlap.mesh_exceeds {
+            Follow::End
+        } else if is_end {
             Follow::Pieces
         } else if self.iteration.is_multiple_of(period) {
             Follow::All
         } else {
             Follow::Bodies
         };
+        let marked: Vec<VertexId> = self.marked().collect();
         let x = self.parametrization.positions();
         let correction = self.profile.time("regions", || {
             self.guidance
-                .correction(self.input.triangulation, x, follow)
+                .correction(self.input.triangulation, x, follow, &marked)
         })?;
         if let Some(moves) = correction {
             self.parametrization.displace(&moves);
@@ -223,13 +227,17 @@ impl<'a> Drape<'a> {
         Ok(())
     }
 
+    /// The vertices that landmarks hold.
+    fn marked(&self) -> impl Iterator<Item = VertexId> + '_ {
+        self.landmarks.iter().flat_map(|l| l.source.vertices)
+    }
+
     /// The result: the positions, without the new folds and new skinny triangles that can be taken out if the settings
     /// ask for it ([`crate::repair`]). The drape stays as it is and can go on.
     pub fn finish(&self) -> Repair {
         let positions = self.positions();
         if self.config.repair {
-            let marked = self.landmarks.iter().flat_map(|l| l.source.vertices);
-            let held: Vec<VertexId> = marked.collect();
+            let held: Vec<VertexId> = self.marked().collect();
             crate::repair(self.input.triangulation, self.input.rest, &positions, &held)
         } else {
             let defects =

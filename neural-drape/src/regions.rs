@@ -1,7 +1,7 @@
 //! Parts of the source that are not draped like the rest: free ones, rigid ones, and those the target lacks.
 
 use mesh_core::{nearest_rotation, Positions, Triangulation, Vector3, VertexData, VertexId};
-use mesh_loss::{Matches, Overlap};
+use mesh_loss::{LocalShape, Matches, Overlap};
 use mesh_operators::{
     bilaplacian, cotan_laplacian, voronoi_mass, FixedSolve, FixedSolveScratch, SpaceExtension,
 };
@@ -61,6 +61,10 @@ impl Regions {
 
 /// A vertex with fewer pairs than this share of what its area makes expect has no counterpart for now.
 const FEW_PAIRS: f64 = 0.2;
+/// So often the shape of each one-ring is spread over a part without a counterpart at the end.
+const N_RELAXATIONS: usize = 100;
+/// What is so near a landmark stays then, in longest sides: a single vertex that is held makes a spike.
+const HELD_AROUND: f64 = 0.015;
 
 /// The regions of one drape, ready to be applied. Coordinates are those of the unit frame.
 pub(crate) struct Guidance {
@@ -72,7 +76,7 @@ pub(crate) struct Guidance {
     led: Vec<VertexId>,
     initial: Positions,
     is_trivial: bool,
-    /// Weight of the pairs of each vertex since pieces were last carried.
+    /// Weight of the pairs of each vertex since parts last followed the rest.
     pairs: VertexData<f64>,
 }
 
@@ -85,6 +89,8 @@ pub(crate) enum Follow {
     Pieces,
     /// Holes in what is attracted close by the smoothest displacement from the initial shape, too; another solve.
     All,
+    /// As for pieces, and holes take the shape that they had initially as far as it fits in.
+    End,
 }
 
 /// Vertices that move as one, and their shape about its centre, in the size it starts with.
@@ -166,25 +172,32 @@ impl Guidance {
         }
     }
 
-    /// What each vertex of a body or a carried piece must move by to be where it belongs; none where nothing must.
-    ///
+    /// What each vertex of a body, a carried piece or a hole must move by to be where it belongs; none where nothing
+    /// must. In holes, the vertices of `held` stay, and what is near them.
     pub(crate) fn correction(
         &mut self,
         triangulation: &Triangulation,
         x: &Positions,
         follow: Follow,
+        held: &[VertexId],
     ) -> Result<Option<VertexData<Vector3>>, DrapeError> {
-        let loose = if follow == Follow::All {
-            self.without_pairs(triangulation, x)
-        } else {
-            Vec::new()
+        let mut loose = match follow {
+            Follow::All | Follow::End => self.without_pairs(triangulation, x),
+            Follow::Bodies | Follow::Pieces => Vec::new(),
         };
         let carries = follow != Follow::Bodies && !self.carried.is_empty();
         if self.bodies.is_empty() && !carries && loose.is_empty() {
             return Ok(None);
         }
         let mut moved = x.clone();
-        self.follow(triangulation, &loose, &mut moved);
+        if follow == Follow::End {
+            let is_far = |v: &VertexId| held.iter().all(|&h| (x[*v] - x[h]).norm() > HELD_AROUND);
+            loose.retain(is_far);
+            let shape = LocalShape::new(triangulation, &self.initial);
+            (0..N_RELAXATIONS).for_each(|_| shape.relax(&mut moved, &loose));
+        } else {
+            self.follow(triangulation, &loose, &mut moved);
+        }
         if carries {
             let points: Vec<_> = self.led.iter().map(|&v| self.initial[v]).collect();
             let moves: Vec<_> = self.led.iter().map(|&v| x[v] - self.initial[v]).collect();
@@ -206,33 +219,25 @@ impl Guidance {
     /// Vertices of connected parts that nothing attracted since this was last asked, with attracted ones all around: a
     /// part that ends openly, as shoulders do, keeps its shape by structure alone.
     fn without_pairs(&mut self, triangulation: &Triangulation, x: &Positions) -> Vec<VertexId> {
-        let total: f64 = self.pairs.iter().sum();
+        let area = vertex_areas(triangulation, x);
+        let pairs = std::mem::replace(&mut self.pairs, VertexData::new(x.len(), 0.0));
+        let total: f64 = pairs.iter().sum();
         if total <= 0.0 {
             return Vec::new();
         }
-        let mut area = VertexData::new(x.len(), 0.0);
-        for (t, corners) in triangulation
-            .triangles()
-            .iter()
-            .zip(triangulation.corners(x))
-        {
-            let share = mesh_core::measure::triangle_area(corners) / 3.0;
-            t.iter().for_each(|&v| area[v] += share);
-        }
-        let paired = self.led.iter().filter(|&&v| self.pairs[v] > 0.0);
+        let paired = self.led.iter().filter(|&&v| pairs[v] > 0.0);
         let density = total / paired.map(|&v| area[v]).sum::<f64>().max(f64::MIN_POSITIVE);
-        let is_loose = |v: VertexId| area[v] > 0.0 && self.pairs[v] < FEW_PAIRS * density * area[v];
-        let mut is_led = VertexData::new(x.len(), false);
-        self.led.iter().for_each(|&v| is_led[v] = true);
+        let mut is_loose = VertexData::new(x.len(), false);
+        for &v in &self.led {
+            is_loose[v] = area[v] > 0.0 && pairs[v] < FEW_PAIRS * density * area[v];
+        }
         let is_rim = rim(triangulation, x.len());
-        let loose = triangulation
-            .connected_groups(x.len(), |v| is_led[v] && is_loose(v))
+        triangulation
+            .connected_groups(x.len(), |v| is_loose[v])
             .into_iter()
             .filter(|part| !part.iter().any(|&v| is_rim[v]))
             .flatten()
-            .collect();
-        self.pairs.iter_mut().for_each(|p| *p = 0.0);
-        loose
+            .collect()
     }
 
     /// Moves the vertices of `loose` by the smoothest displacement from the initial shape that the others allow; not at
@@ -316,6 +321,17 @@ fn rim(triangulation: &Triangulation, n: usize) -> VertexData<bool> {
         }
     }
     is_rim
+}
+
+/// A third of the area of the triangles at each vertex.
+fn vertex_areas(triangulation: &Triangulation, x: &Positions) -> VertexData<f64> {
+    let mut area = VertexData::new(x.len(), 0.0);
+    let triangles = triangulation.triangles().iter();
+    for (t, corners) in triangles.zip(triangulation.corners(x)) {
+        let share = mesh_core::measure::triangle_area(corners) / 3.0;
+        t.iter().for_each(|&v| area[v] += share);
+    }
+    area
 }
 
 /// Which vertices have a triangle.

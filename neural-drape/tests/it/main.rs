@@ -1,6 +1,7 @@
 //! The stepper as its users call it.
 
 mod landmarks;
+mod part;
 mod regions;
 mod resume;
 mod run;

@@ -1,0 +1,54 @@
+//! A target that is only a part of what the source shows.
+
+use mesh_core::measure::corner_angle;
+use mesh_core::{shapes, Positions, TargetSurface, TriangleSoup, VertexId};
+use neural_drape::{DrapeInput, OverlapMode};
+
+use crate::setup::{on_ellipsoid, run, short, Pair};
+
+/// The ellipsoid, with a hole where it is highest.
+fn holed() -> TriangleSoup {
+    let mut soup = shapes::icosphere(3);
+    let is_low = |f: &Vec<u32>| f.iter().all(|&v| soup.positions[v as usize].z < 0.6);
+    soup.faces = soup.faces.iter().filter(|f| is_low(f)).cloned().collect();
+    soup.positions.iter_mut().for_each(|p| *p = on_ellipsoid(p));
+    TriangleSoup::new(soup).expect("a shape with a hole")
+}
+
+/// Mean change of the corner angles of the triangles all of whose corners are in `part`, in degrees.
+fn angle_change(pair: &Pair, x: &Positions, part: &[VertexId]) -> f64 {
+    let triangles = pair.triangulation.triangles().iter();
+    let inside = triangles.filter(|t| t.iter().all(|v| part.contains(v)));
+    let changes: Vec<f64> = inside
+        .flat_map(|&[a, b, c]| [[a, b, c], [b, c, a], [c, a, b]])
+        .map(|[a, b, c]| {
+            let at = |x: &Positions| corner_angle(x[a], x[b], x[c]);
+            (at(x) - at(&pair.initial)).abs().to_degrees()
+        })
+        .collect();
+    changes.iter().sum::<f64>() / changes.len() as f64
+}
+
+#[test]
+fn what_lies_over_a_hole_keeps_its_initial_shape_and_closes_it() {
+    let pair = Pair::new(shapes::quad_sphere(12));
+    let target = holed();
+    let input = DrapeInput {
+        target: &target,
+        ..pair.input()
+    };
+    let mut config = short("standard", 200);
+    config.overlap = OverlapMode::TargetPartial;
+    let (x, _) = run(input, config).expect("a sound pair");
+
+    let cap: Vec<VertexId> = x.ids().filter(|&v| pair.rest[v].z > 0.75).collect();
+    let change = angle_change(&pair, &x, &cap);
+    // The terms of the loss alone leave 3°.
+    assert!(change < 2.5, "{change}");
+    // Over the hole, whose rim is at 0.3, not on it.
+    assert!(cap.iter().all(|&v| x[v].z > 0.3));
+    let below: Vec<VertexId> = x.ids().filter(|&v| pair.rest[v].z < 0.4).collect();
+    let miss = |&v: &VertexId| target.closest_point(&x[v]).distance_squared.sqrt();
+    let mean = below.iter().map(miss).sum::<f64>() / below.len() as f64;
+    assert!(mean < 0.01, "{mean}");
+}
