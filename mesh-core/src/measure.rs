@@ -47,6 +47,24 @@ pub fn triangle_quality([a, b, c]: [Point3; 3]) -> f64 {
     }
 }
 
+/// Smallest height of a triangle; 0 for a degenerate one.
+pub fn smallest_height(corners: [Point3; 3]) -> f64 {
+    let [a, b, c] = corners;
+    let longest = (b - a).norm().max((c - b).norm()).max((a - c).norm());
+    if longest > 0.0 {
+        area_vector(corners).norm() / longest
+    } else {
+        0.0
+    }
+}
+
+/// Mean length of the edges of the mesh at `x`; 0 without edges.
+pub fn mean_edge_length(triangulation: &Triangulation, x: &Positions) -> f64 {
+    let edges = triangulation.edges();
+    let total: f64 = edges.iter().map(|&[a, b]| (x[a] - x[b]).norm()).sum();
+    total / edges.len().max(1) as f64
+}
+
 /// Area of each triangle of `triangulation` at `x`.
 pub fn triangle_areas(triangulation: &Triangulation, x: &Positions) -> Vec<f64> {
     triangulation.corners(x).map(triangle_area).collect()

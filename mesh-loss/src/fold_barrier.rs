@@ -1,6 +1,6 @@
 //! No edge folds over.
 
-use mesh_core::measure::triangle_normal;
+use mesh_core::measure::{mean_edge_length, smallest_height, triangle_normal};
 use mesh_core::{Positions, Triangulation, TriangulationEdge, Vector3, VertexData, VertexId};
 
 use crate::gradient::pull_back_normal;
@@ -8,7 +8,10 @@ use crate::Loss;
 
 /// Penalty on edges whose two faces turn against each other more than at rest.
 ///
-/// `3/N Σ over interior edges of max(0, min(n₁·n₂ at rest, limit) − n₁·n₂)²`
+/// `3/N Σ over interior edges of w max(0, min(n₁·n₂ at rest, limit) − n₁·n₂)²`, `w = min(1, 3h/ē)`
+///
+/// with the smallest height h of the two faces and the mean edge length ē, both at rest. A normal turns by 1/h of what its
+/// corners move: without w, the edges of tiny faces would pull so hard that steps shoot past the fold and back.
 ///
 /// Units: none; 0 while no edge bends past the limit. Edges at a degenerate face add nothing.
 /// Source: beyond the paper. Off in `paper`.
@@ -16,7 +19,11 @@ pub struct FoldBarrier<'a> {
     triangulation: &'a Triangulation,
     edges: Vec<TriangulationEdge>,
     limits: Vec<f64>,
+    weights: Vec<f64>,
 }
+
+/// Edges whose faces are at least this high, in mean edge lengths, count in full.
+const FULL_HEIGHT: f64 = 1.0 / 3.0;
 
 impl<'a> FoldBarrier<'a> {
     /// The barrier for a mesh whose rest shape is `rest`; `limit` in −1..=1 is the cosine at which an edge that was
@@ -31,10 +38,20 @@ impl<'a> FoldBarrier<'a> {
                 n.zip(m).map_or(limit, |(n, m)| n.dot(&m).min(limit))
             })
             .collect();
+        let full = FULL_HEIGHT * mean_edge_length(triangulation, rest);
+        let height = |t: usize| smallest_height(triangulation.triangles()[t].map(|v| rest[v]));
+        let weights = edges
+            .iter()
+            .map(|e| {
+                let [h, k] = e.triangles.map(height);
+                (h.min(k) / full).min(1.0)
+            })
+            .collect();
         Self {
             triangulation,
             edges,
             limits,
+            weights,
         }
     }
 
@@ -84,8 +101,8 @@ impl<'a> FoldBarrier<'a> {
             if excess <= 0.0 {
                 continue;
             }
-            sum += excess * excess;
-            let scale = -2.0 * weight * share * excess;
+            sum += self.weights[row] * excess * excess;
+            let scale = -2.0 * weight * share * self.weights[row] * excess;
             for (t, other) in [(one, m), (two, n)] {
                 let t = self.triangulation.triangles()[t];
                 let g = pull_back_normal(t.map(|v| x[v]), &(other * scale));

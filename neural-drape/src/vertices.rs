@@ -1,5 +1,6 @@
 //! The vertices themselves as parameters, preconditioned so that a step moves them smoothly.
 
+use mesh_core::measure::mean_edge_length;
 use mesh_core::{Positions, Triangulation, Vector3, VertexData};
 use mesh_operators::{CsrMatrix, SpdSolver};
 use serde::{Deserialize, Serialize};
@@ -65,13 +66,8 @@ impl Vertices {
         config: &VerticesConfig,
     ) -> Result<Self, DrapeError> {
         let n = initial.len();
-        let edges = triangulation.edges();
-        let total: f64 = edges
-            .iter()
-            .map(|&[a, b]| (initial[a] - initial[b]).norm())
-            .sum();
-        let mean_edge = (total / edges.len().max(1) as f64).max(f64::MIN_POSITIVE);
-        let laplacian = mesh_operators::uniform_laplacian(n, edges);
+        let mean_edge = mean_edge_length(triangulation, initial).max(f64::MIN_POSITIVE);
+        let laplacian = mesh_operators::uniform_laplacian(n, triangulation.edges());
         let solver = SpdSolver::new(&preconditioner(&laplacian, mean_edge, config, 0))?;
         Ok(Self {
             config: *config,

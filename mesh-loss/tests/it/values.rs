@@ -114,3 +114,27 @@ fn half_turned_pair_of_faces_is_stopped_by_the_barrier() {
     let (value, gradient) = value_and_gradient(&barrier, &folded);
     assert!(value > 0.1 && gradient > 0.1);
 }
+
+#[test]
+fn folds_of_thin_faces_pull_no_harder_than_others() {
+    let steepest = |height: f64| {
+        let (mesh, mut rest) = shapes::open_grid(8, 8).into_halfedge().unwrap();
+        for p in rest.iter_mut().filter(|p| p.x > 4.0) {
+            p.x += height - 1.0;
+        }
+        let triangulation = mesh_core::Triangulation::new(&mesh, &rest);
+        let mut folded = rest.clone();
+        for p in folded.iter_mut().filter(|p| p.x > 4.0) {
+            p.x = 8.0 - p.x;
+            p.z = 0.3 * (4.0 - p.x);
+        }
+        let mut gradient = VertexData::new(rest.len(), Vector3::zeros());
+        FoldBarrier::new(&triangulation, &rest, 0.3).accumulate(&folded, 1.0, &mut gradient);
+        gradient.iter().map(Vector3::norm).fold(0.0, f64::max)
+    };
+    let ordinary = steepest(1.0);
+    assert!(ordinary > 0.0);
+    for height in [0.1, 0.01, 0.001] {
+        assert!(steepest(height) < 5.0 * ordinary, "{height}");
+    }
+}
