@@ -109,7 +109,7 @@ pub trait TargetSurface: Send + Sync {
     /// Whether the sign of [`Self::normal`] means something.
     fn normal_sign(&self) -> NormalSign;
 
-    /// Whether the place lies on an open boundary of the surface: the rim of a hole, the end of a scan.
+    /// Whether the place lies on an open boundary of the surface: the rim of a hole, the end of a scan. Cracks are none.
     fn is_on_boundary(&self, location: &Location) -> bool;
 
     /// The smallest box around the surface.

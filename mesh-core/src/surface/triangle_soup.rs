@@ -55,7 +55,7 @@ impl TriangleSoup {
 
         let weld = Weld::new(&positions, &triangles);
         Ok(Self {
-            boundary: Boundary::new(&weld),
+            boundary: Boundary::new(&weld, &bvh),
             orientation: Orientation::new(&weld, &bvh),
             vertices: weld
                 .used_vertices()
@@ -88,7 +88,8 @@ impl TriangleSoup {
         self.area
     }
 
-    /// Whether the surface has an open boundary.
+    /// Whether the surface has an open boundary: an edge of a single triangle behind which it does not go on. Cracks and
+    /// gaps of a triangle or two are none.
     pub fn has_boundary(&self) -> bool {
         !self.boundary.is_empty()
     }

@@ -182,3 +182,54 @@ fn samples_are_uniform_by_area() {
         assert!((point - s.point.coords).norm() < 1e-15 && barycentric.iter().all(|&w| w >= 0.0));
     }
 }
+
+#[test]
+fn cracks_and_single_missing_faces_are_no_boundary_and_holes_are() {
+    // Corners of their own, a thousandth of a side apart, and every eleventh face missing.
+    let mut cracked = shuffled(&shapes::icosphere(3), 7);
+    for (k, p) in cracked.positions.iter_mut().enumerate() {
+        *p *= 1.0 + 1e-4 * ((k % 7) as f64 - 3.0);
+    }
+    let whole = cracked.faces.len();
+    let mut row = 0;
+    cracked.faces.retain(|_| {
+        row += 1;
+        row % 11 != 0
+    });
+    assert!(cracked.faces.len() < whole);
+    let share = |target: &TriangleSoup| {
+        let out: Vec<Point3> = target.vertices().iter().map(|p| p * 1.2).collect();
+        let hits = target.closest_points(&out);
+        let open = hits.iter().filter(|h| target.is_on_boundary(&h.location));
+        open.count() as f64 / out.len() as f64
+    };
+    assert!(share(&target(cracked.clone())) < 0.02);
+
+    // Half a ball ends at a rim, cracked or not.
+    let centre_up = |f: &Vec<u32>| {
+        f.iter()
+            .map(|&v| cracked.positions[v as usize].z)
+            .sum::<f64>()
+    };
+    let half = PolygonSoup {
+        faces: cracked
+            .faces
+            .iter()
+            .filter(|f| centre_up(f) > 0.0)
+            .cloned()
+            .collect(),
+        ..cracked.clone()
+    };
+    let half = target(half);
+    assert!(half.has_boundary());
+    let below: Vec<Point3> = (0..40)
+        .map(|k| 0.157 * f64::from(k))
+        .map(|turn| Point3::new(turn.cos(), turn.sin(), -0.3))
+        .collect();
+    let hits = half.closest_points(&below);
+    let open = hits
+        .iter()
+        .filter(|h| half.is_on_boundary(&h.location))
+        .count();
+    assert!(open > 30, "{open}");
+}
