@@ -44,10 +44,6 @@ pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
         args.settings.preset.is_none() || args.settings.config.is_none(),
         "give --preset or --config; a config file may name its preset"
     );
-    ensure!(
-        args.settings.overlap.is_none(),
-        "batch takes --overlap from a --config file: overlap = \"full\""
-    );
     args.settings.settings()?;
     let tasks = tasks(args)?;
     let rows = suite::run(&tasks, &args.summary, &Pool::new(args.jobs)?)?;
@@ -63,6 +59,13 @@ fn tasks(args: &Args) -> anyhow::Result<Vec<Task>> {
                 .unwrap_or_else(|| DrapeConfig::PRESETS[0].to_owned()),
         ),
     };
+    let settings = &args.settings;
+    let mut options = vec![
+        format!("--weld={}", args.weld.weld),
+        format!("--morphs={}", args.morphs.morphs),
+    ];
+    options.extend(option("initial", settings.initial));
+    options.extend(option("overlap", settings.overlap));
     let mut tasks: Vec<Task> = Vec::new();
     for target in &args.targets {
         let named = |pattern: &str| PathBuf::from(fill(pattern, &args.source, target));
@@ -91,16 +94,19 @@ fn tasks(args: &Args) -> anyhow::Result<Vec<Task>> {
                 judge: None,
             },
             method: method.clone(),
-            options: vec![
-                format!("--weld={}", args.weld.weld),
-                format!("--morphs={}", args.morphs.morphs),
-            ],
-            seed: args.settings.seed.unwrap_or(0),
+            options: options.clone(),
+            seed: settings.seed.unwrap_or(0),
             picture: output.with_extension("png"),
             output,
         });
     }
     Ok(tasks)
+}
+
+/// An option of the command line with the name of its value, where it is given.
+fn option(name: &str, value: Option<impl clap::ValueEnum>) -> Option<String> {
+    let value = value?.to_possible_value()?;
+    Some(format!("--{name}={}", value.get_name()))
 }
 
 /// The pattern with its names in braces replaced.
@@ -118,6 +124,19 @@ fn fill(pattern: &str, source: &Path, target: &Path) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn settings_of_the_command_line_go_to_every_run() {
+        use clap::Args as _;
+        let command = Args::augment_args(clap::Command::new("batch"));
+        let line = "batch a.obj b.obj -o {target}.obj --initial paper --overlap source-partial";
+        let matches = command.try_get_matches_from(line.split(' ')).unwrap();
+        let args = <Args as clap::FromArgMatches>::from_arg_matches(&matches).unwrap();
+        for option in ["--initial=paper", "--overlap=source-partial"] {
+            let tasks = tasks(&args).unwrap();
+            assert!(tasks[0].options.iter().any(|o| o == option), "{option}");
+        }
+    }
 
     #[test]
     fn names_in_braces_are_replaced() {
