@@ -191,3 +191,23 @@ impl UnitFrame {
         self.center + p.coords * self.scale
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn heights_and_edges_of_a_right_triangle() {
+        let corners = [[0.0, 0.0, 0.0], [3.0, 0.0, 0.0], [0.0, 4.0, 0.0]].map(Point3::from);
+        assert!((smallest_height(corners) - 2.4).abs() < 1e-15);
+        assert_eq!(smallest_height([Point3::origin(); 3]), 0.0);
+
+        let soup = crate::PolygonSoup {
+            positions: corners.to_vec(),
+            faces: vec![vec![0, 1, 2]],
+            ..crate::PolygonSoup::default()
+        };
+        let (mesh, x) = soup.into_halfedge().unwrap();
+        assert_eq!(mean_edge_length(&Triangulation::new(&mesh, &x), &x), 4.0);
+    }
+}
