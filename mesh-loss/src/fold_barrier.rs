@@ -8,7 +8,7 @@ use crate::Loss;
 
 /// Penalty on edges whose two faces turn against each other more than at rest.
 ///
-/// `3/N Σ over interior edges of w max(0, min(n₁·n₂ at rest, limit) − n₁·n₂)²`, `w = min(1, 3h/ē)`
+/// `3/N Σ over interior edges of w max(0, min(n₁·n₂ at rest, limit) − n₁·n₂)²`, `w = min(1, 6h/ē)`
 ///
 /// with the smallest height h of the two faces and the mean edge length ē, both at rest. A normal turns by 1/h of what its
 /// corners move: without w, the edges of tiny faces would pull so hard that steps shoot past the fold and back.
@@ -23,7 +23,7 @@ pub struct FoldBarrier<'a> {
 }
 
 /// Edges whose faces are at least this high, in mean edge lengths, count in full.
-const FULL_HEIGHT: f64 = 1.0 / 3.0;
+const FULL_HEIGHT: f64 = 1.0 / 6.0;
 
 impl<'a> FoldBarrier<'a> {
     /// The barrier for a mesh whose rest shape is `rest`; `limit` in −1..=1 is the cosine at which an edge that was
