@@ -328,6 +328,7 @@ impl<'a> Drape<'a> {
             state.counts(&hard.of_mesh);
             state.counts(&hard.of_target);
             state.points(self.structure.anchored_at());
+            self.guidance.save(state);
             self.parametrization.save(state);
         })
     }
@@ -355,6 +356,7 @@ impl<'a> Drape<'a> {
         let mut anchor = self.structure.anchored_at().clone();
         reader.points(anchor.iter_mut())?;
         self.structure.anchor(self.input.triangulation, &anchor);
+        self.guidance.restore(&mut reader)?;
         self.parametrization.restore(&mut reader)?;
         reader.finish()
     }

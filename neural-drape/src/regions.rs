@@ -7,7 +7,7 @@ use mesh_operators::{
 };
 use nalgebra::Matrix3;
 
-use crate::DrapeError;
+use crate::{DrapeError, StateReader, StateWriter};
 
 /// A field that carries pieces has at most this many centres.
 const MAX_CENTRES: usize = 500;
@@ -170,6 +170,19 @@ impl Guidance {
                 self.pairs[v] += w;
             }
         }
+    }
+
+    /// Writes which vertices had pairs.
+    pub(crate) fn save(&self, state: &mut StateWriter) {
+        self.pairs.iter().for_each(|&p| state.real(p));
+    }
+
+    /// Takes what [`Self::save`] wrote.
+    pub(crate) fn restore(&mut self, state: &mut StateReader<'_>) -> Result<(), DrapeError> {
+        self.pairs.iter_mut().try_for_each(|p| {
+            *p = state.real()?;
+            Ok(())
+        })
     }
 
     /// What each vertex of a body, a carried piece or a hole must move by to be where it belongs; none where nothing

@@ -2,7 +2,7 @@
 
 use mesh_core::measure::corner_angle;
 use mesh_core::{shapes, Positions, TargetSurface, TriangleSoup, VertexId};
-use neural_drape::{DrapeInput, OverlapMode};
+use neural_drape::{Drape, DrapeInput, OverlapMode};
 
 use crate::setup::{on_ellipsoid, run, short, Pair};
 
@@ -51,4 +51,29 @@ fn what_lies_over_a_hole_keeps_its_initial_shape_and_closes_it() {
     let miss = |&v: &VertexId| target.closest_point(&x[v]).distance_squared.sqrt();
     let mean = below.iter().map(miss).sum::<f64>() / below.len() as f64;
     assert!(mean < 0.01, "{mean}");
+}
+
+#[test]
+fn a_kept_drape_over_a_part_goes_on_to_the_same_bits() {
+    let pair = Pair::new(shapes::quad_sphere(8));
+    let target = holed();
+    let input = DrapeInput {
+        target: &target,
+        ..pair.input()
+    };
+    let mut config = short("standard", 30);
+    config.overlap = OverlapMode::TargetPartial;
+    let steps = |drape: &mut Drape<'_>, n: usize| {
+        (0..n).for_each(|_| drop(drape.step().expect("a step")));
+    };
+    let mut drape = Drape::new(input, config.clone()).unwrap();
+    // In the middle of a period after which parts without pairs follow the rest.
+    steps(&mut drape, 28);
+    let state = drape.state();
+    steps(&mut drape, 2);
+
+    let mut again = Drape::new(input, config).unwrap();
+    again.restore(&state).unwrap();
+    steps(&mut again, 2);
+    assert_eq!(again.positions(), drape.positions());
 }
