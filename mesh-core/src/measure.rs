@@ -205,7 +205,6 @@ mod tests {
         let soup = crate::PolygonSoup {
             positions: corners.to_vec(),
             faces: vec![vec![0, 1, 2]],
-            ..crate::PolygonSoup::default()
         };
         let (mesh, x) = soup.into_halfedge().unwrap();
         assert_eq!(mean_edge_length(&Triangulation::new(&mesh, &x), &x), 4.0);
