@@ -153,8 +153,9 @@ impl Target {
         let strays = soup.strays();
         let mut left_out = Vec::new();
         let total = soup.area();
-        if let Some(kept) = soup.without(&[strays.crumbs.as_slice(), &strays.hidden].concat()) {
+        if let Some(kept) = soup.without(&strays.rows().collect::<Vec<_>>()) {
             let what = [
+                (strays.slivers.len(), "without area"),
                 (strays.crumbs.len(), "in crumbs and fins"),
                 (
                     strays.hidden.len(),

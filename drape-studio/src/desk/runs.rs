@@ -117,8 +117,12 @@ impl Desk {
         Ok(())
     }
 
-    /// Hands the drape what it has not seen yet.
+    /// Hands the drape what it has not seen yet; it is on disk by then, so that no drape that is taken up
+    /// after a sudden end knows of edits that its session has lost.
     fn order_pending(&mut self) -> Result<()> {
+        if self.are_marks_pending() || self.are_parts_pending() {
+            self.save();
+        }
         if self.are_marks_pending() {
             self.order(Order::Marks(self.complete_marks()))?;
         }

@@ -1,12 +1,13 @@
-//! Parts of a triangle soup that do not belong to its outer surface: fins, crumbs and inner walls.
+//! Parts of a triangle soup that do not belong to its outer surface: slivers, fins, crumbs and inner walls.
 //!
-//! A soup falls into patches, joined within by edges that exactly two triangles share. One patch is usually the
+//! Slivers have no area, so nothing is lost without them; but they can be long, and a closest point on one that sticks
+//! out is on no surface. The rest of a soup falls into patches, joined within by edges that exactly two triangles share. One patch is usually the
 //! shape; what hangs on it at edges of three or more triangles, floats beside it, or is closed in by it is not.
 
 use super::orientation::escaping_share;
 use super::weld::Weld;
-use crate::measure::triangle_area;
-use crate::TriangleBvh;
+use crate::measure::{smallest_height, triangle_area, triangle_quality};
+use crate::{Point3, TriangleBvh};
 
 /// Nothing is called stray unless one patch holds at least this share of the area.
 const MAIN_SHARE: f64 = 0.5;
@@ -14,10 +15,16 @@ const MAIN_SHARE: f64 = 0.5;
 const SMALL: f64 = 5e-3;
 /// A patch from which fewer than this share of rays escapes, to either side, is hidden.
 const SEEN: f64 = 0.02;
+/// Slivers are lower than this share of the box's longest side: what single precision leaves of three points on a line.
+const FLAT: f64 = 1e-6;
+/// Slivers have a quality ([`triangle_quality`]) below this, however small they are.
+const THIN: f64 = 1e-2;
 
 /// Triangles that do not belong to the outer surface, by row, ascending.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Strays {
+    /// Without area, three corners on a line, and with a side that no other triangle shares.
+    pub slivers: Vec<u32>,
     /// Of small sheets that hang on an edge of the surface or float beside it.
     pub crumbs: Vec<u32>,
     /// Of larger patches that no ray from outside reaches.
@@ -27,7 +34,15 @@ pub struct Strays {
 impl Strays {
     /// Whether everything belongs to the surface.
     pub fn is_empty(&self) -> bool {
-        self.crumbs.is_empty() && self.hidden.is_empty()
+        self.rows().next().is_none()
+    }
+
+    /// All of them.
+    pub fn rows(&self) -> impl Iterator<Item = u32> + '_ {
+        [&self.slivers, &self.crumbs, &self.hidden]
+            .into_iter()
+            .flatten()
+            .copied()
     }
 
     /// The strays among the triangles of `bvh`.
@@ -38,6 +53,10 @@ impl Strays {
             .map(|t| [3 * t, 3 * t + 1, 3 * t + 2])
             .collect();
         let weld = Weld::new(&positions, &rows);
+        let mut strays = Self {
+            slivers: slivers(&weld, &corners, FLAT * bvh.bounds().longest_side()),
+            ..Self::default()
+        };
         let patches = patches(&weld);
         let areas: Vec<f64> = patches
             .iter()
@@ -51,13 +70,14 @@ impl Strays {
         let (total, largest) = areas
             .iter()
             .fold((0.0, 0.0f64), |(sum, most), &a| (sum + a, most.max(a)));
-        let mut strays = Self::default();
         if patches.len() < 2 || largest < MAIN_SHARE * total {
+            strays.add_doubles(&weld);
             return strays;
         }
         for (patch, &area) in patches.iter().zip(&areas) {
             if area <= SMALL * largest {
-                strays.crumbs.extend(patch);
+                let is_new = |t: &&u32| strays.slivers.binary_search(t).is_err();
+                strays.crumbs.extend(patch.iter().filter(is_new));
             } else if area < largest && is_hidden(bvh, patch) {
                 strays.hidden.extend(patch);
             }
@@ -68,7 +88,7 @@ impl Strays {
 
     /// A double goes with its original.
     fn add_doubles(&mut self, weld: &Weld) {
-        for rows in [&mut self.crumbs, &mut self.hidden] {
+        for rows in [&mut self.slivers, &mut self.crumbs, &mut self.hidden] {
             rows.sort_unstable();
             let doubles: Vec<u32> = (0u32..)
                 .zip(&weld.originals)
@@ -79,6 +99,22 @@ impl Strays {
             rows.sort_unstable();
         }
     }
+}
+
+/// Triangles without area that hang free at a side, ascending; the others lie between their neighbours and do no harm.
+fn slivers(weld: &Weld, corners: &[[Point3; 3]], flat: f64) -> Vec<u32> {
+    let is_flat = |t: u32| {
+        let corners = corners[t as usize];
+        smallest_height(corners) <= flat && triangle_quality(corners) < THIN
+    };
+    let free_sides = weld.edges().filter(|edge| edge.len() == 1).map(|e| e[0]);
+    let mut slivers: Vec<u32> = free_sides
+        .map(|side| side.triangle)
+        .filter(|&t| is_flat(t))
+        .collect();
+    slivers.sort_unstable();
+    slivers.dedup();
+    slivers
 }
 
 /// Whether no ray leaves a patch to infinity, on either side.
@@ -195,6 +231,25 @@ mod tests {
             strays(joined(ball, crumb)).crumbs,
             (n..n + 4).collect::<Vec<_>>()
         );
+    }
+
+    #[test]
+    fn slivers_are_found_where_they_hang_free() {
+        // Between two triangles, a third one closes the gap at a corner on its neighbour's side.
+        let [a, b, c] = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.3, 0.0, 0.0]].map(Point3::from);
+        let [up, down, out] =
+            [[0.5, 1.0, 0.0], [0.5, -1.0, 0.0], [0.5, 0.5, 1.0]].map(Point3::from);
+        let faces = [[0, 1, 3], [0, 2, 1], [0, 4, 2], [2, 4, 1]];
+        let mut soup = PolygonSoup {
+            positions: vec![a, b, c, up, down],
+            faces: faces.map(|f| f.to_vec()).to_vec(),
+        };
+        assert!(strays(soup.clone()).is_empty());
+        // One that sticks out, and its double.
+        soup.positions
+            .extend([up, out, nalgebra::center(&up, &out)]);
+        soup.faces.extend([vec![5, 6, 7], vec![7, 6, 5]]);
+        assert_eq!(strays(soup).slivers, [4, 5]);
     }
 
     #[test]
