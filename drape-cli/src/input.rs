@@ -213,9 +213,18 @@ impl Target {
             .map(|index| cloud.normal(&Location::Point { index }).unwrap_or_default())
             .collect();
         let cloud = Arc::new(cloud);
+        let mut over = Arc::clone(&cloud);
+        if let Some(denoised) = cloud.denoised() {
+            let share = 100.0 * denoised.scatter / cloud.bounds().longest_side();
+            left_out.push(format!(
+                "the points of the target scatter by {share:.1} % of its longest side; {} of them were left out, and the others count where the planes of their neighbours run",
+                denoised.n_left_out
+            ));
+            over = Arc::new(denoised.cloud);
+        }
         Ok(Self {
             model: Model::cloud(&kept, Some(&normals)),
-            over: Arc::new(SurfelCloud::new(Arc::clone(&cloud))),
+            over: Arc::new(SurfelCloud::new(over)),
             surface: cloud,
             vertices,
             left_out,

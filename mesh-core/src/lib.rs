@@ -48,7 +48,7 @@ pub use proxy::Proxy;
 pub use rotation::nearest_rotation;
 pub use soup::PolygonSoup;
 pub use surface::{
-    Location, NormalSign, PointCloud, Strays, SurfacePoint, SurfaceSample, SurfelCloud,
+    Denoised, Location, NormalSign, PointCloud, Strays, SurfacePoint, SurfaceSample, SurfelCloud,
     TargetSurface, TriangleSoup,
 };
 pub use triangulation::{Triangulation, TriangulationEdge};

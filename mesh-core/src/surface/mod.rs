@@ -1,6 +1,7 @@
 //! Target surfaces: what can be draped onto. A target needs no connectivity.
 
 mod boundary;
+mod denoise;
 mod exposure;
 mod neighbourhood;
 mod orientation;
@@ -11,6 +12,7 @@ mod surfels;
 mod triangle_soup;
 mod weld;
 
+pub use denoise::Denoised;
 pub use exposure::is_exposed;
 pub use point_cloud::PointCloud;
 pub use stray::Strays;

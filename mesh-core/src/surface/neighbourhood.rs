@@ -44,6 +44,8 @@ pub(super) struct Neighbourhood {
     pub(super) area: f64,
     /// How flat the neighbours lie, from 0 (they fill space, and the normal means nothing) to 1; 1 for a given normal.
     pub(super) flatness: f64,
+    /// The way from the point across to the mean of its neighbours.
+    to_plane: Vector3,
     /// Whether neighbours leave a wide gap around the normal.
     has_gap: bool,
 }
@@ -60,15 +62,34 @@ pub(super) fn neighbourhoods(
         .par_iter()
         .with_min_len(64)
         .map(|&row| {
-            let mut neighbours = tree.nearest_rows(&points[row as usize], K + 1);
-            neighbours.retain(|&n| n != row);
-            neighbours.truncate(K);
+            let neighbours = neighbours_of(tree, points, row);
             let given = normals.map(|n| n[row as usize]);
             neighbourhood(points, row as usize, &neighbours, given)
         })
         .collect();
     let slots = (0..points.len() as u32).map(|row| tree.slot(row) as usize);
     slots.map(|slot| by_slot[slot].clone()).collect()
+}
+
+/// The nearest other points, nearest first.
+pub(super) fn neighbours_of(tree: &PointTree, points: &[Point3], row: u32) -> Vec<u32> {
+    let mut neighbours = tree.nearest_rows(&points[row as usize], K + 1);
+    neighbours.retain(|&n| n != row);
+    neighbours.truncate(K);
+    neighbours
+}
+
+/// How far points lie off the planes of their neighbours in another way than these neighbours do, as a share of the
+/// spacing, in the median: bends are shared, noise is not.
+pub(super) fn noise(neighbourhoods: &[Neighbourhood]) -> f64 {
+    let shares = neighbourhoods.iter().map(|n| {
+        let around = n.nearest.iter().filter(|&&row| row != NONE);
+        let (count, sum) = around.fold((0, Vector3::zeros()), |(count, sum), &row| {
+            (count + 1, sum + neighbourhoods[row as usize].to_plane)
+        });
+        (n.to_plane - sum / f64::from(count)).norm() / n.area.sqrt()
+    });
+    median(shares.filter(|share| share.is_finite()))
 }
 
 /// Whether the surface ends at each point: a wide gap, and others with one beside it (after Bendels et al. 2006).
@@ -138,7 +159,7 @@ fn groups(neighbourhoods: &[Neighbourhood], is_out: &[bool]) -> Vec<u32> {
 }
 
 /// The upper median; 0 of nothing.
-fn median(values: impl Iterator<Item = f64>) -> f64 {
+pub(super) fn median(values: impl Iterator<Item = f64>) -> f64 {
     let mut values: Vec<f64> = values.collect();
     let middle = values.len() / 2;
     if values.is_empty() {
@@ -159,13 +180,19 @@ fn neighbourhood(
         .collect();
     let (normal, flatness) = match given.filter(|n| *n != Vector3::zeros()) {
         Some(normal) => (normal, 1.0),
-        None => plane_normal(&offsets[..offsets.len().min(N_IN_PLANE)]),
+        None => {
+            let near = offsets.iter().take(N_IN_PLANE).copied();
+            let plane = Plane::of(near.chain([Vector3::zeros()]).map(|o| (o, 1.0)));
+            (plane.normal, plane.flatness)
+        }
     };
     let mut nearest = [NONE; N_KEPT];
     for (kept, &n) in nearest.iter_mut().zip(neighbours) {
         *kept = n;
     }
+    let mean = offsets.iter().sum::<Vector3>() / offsets.len().max(1) as f64;
     Neighbourhood {
+        to_plane: normal * normal.dot(&mean),
         normal,
         nearest,
         area: offsets.iter().map(Vector3::norm_squared).sum::<f64>() / offsets.len().max(1) as f64,
@@ -174,26 +201,44 @@ fn neighbourhood(
     }
 }
 
-/// The direction in which the point and its neighbours spread least, zero where they lie on a line, and how flat they
-/// lie: 1 while the least spread is below a tenth of the middle one, falling to 0 at three tenths.
-fn plane_normal(offsets: &[Vector3]) -> (Vector3, f64) {
-    let mean = offsets.iter().sum::<Vector3>() / (offsets.len() + 1) as f64;
-    let spread = offsets
-        .iter()
-        .map(|o| o - mean)
-        .chain([-mean])
-        .map(|o| o * o.transpose())
-        .sum::<Matrix3<f64>>();
-    let eigen = SymmetricEigen::new(spread);
-    let mut order = [0, 1, 2];
-    order.sort_by(|&a, &b| eigen.eigenvalues[a].total_cmp(&eigen.eigenvalues[b]));
-    let [least, middle, most] = order;
-    if eigen.eigenvalues[middle] > LINE * eigen.eigenvalues[most] {
-        let thickness = eigen.eigenvalues[least].max(0.0) / eigen.eigenvalues[middle];
-        let normal = eigen.eigenvectors.column(least).into_owned();
-        (normal, ((0.3 - thickness) / 0.2).clamp(0.0, 1.0))
-    } else {
-        (Vector3::zeros(), 0.0)
+/// The plane of least squares of weighted points.
+pub(super) struct Plane {
+    /// Their mean.
+    pub(super) mean: Vector3,
+    /// The direction in which they spread least, of length 1; zero where they lie on a line.
+    pub(super) normal: Vector3,
+    /// How flat they lie: 1 while the least spread is below a tenth of the middle one, falling to 0 at three tenths.
+    pub(super) flatness: f64,
+}
+
+impl Plane {
+    pub(super) fn of(weighted: impl Iterator<Item = (Vector3, f64)> + Clone) -> Self {
+        let (sum, total) = weighted
+            .clone()
+            .fold((Vector3::zeros(), 0.0), |(sum, total), (o, w)| {
+                (sum + o * w, total + w)
+            });
+        let mean = sum / total;
+        let spread = weighted
+            .map(|(o, w)| (o - mean, w))
+            .map(|(o, w)| o * o.transpose() * w)
+            .sum::<Matrix3<f64>>();
+        let eigen = SymmetricEigen::new(spread);
+        let mut order = [0, 1, 2];
+        order.sort_by(|&a, &b| eigen.eigenvalues[a].total_cmp(&eigen.eigenvalues[b]));
+        let [least, middle, most] = order;
+        let (normal, flatness) = if eigen.eigenvalues[middle] > LINE * eigen.eigenvalues[most] {
+            let thickness = eigen.eigenvalues[least].max(0.0) / eigen.eigenvalues[middle];
+            let normal = eigen.eigenvectors.column(least).into_owned();
+            (normal, ((0.3 - thickness) / 0.2).clamp(0.0, 1.0))
+        } else {
+            (Vector3::zeros(), 0.0)
+        };
+        Self {
+            mean,
+            normal,
+            flatness,
+        }
     }
 }
 

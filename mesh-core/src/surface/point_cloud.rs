@@ -2,7 +2,8 @@
 
 use rand::{Rng, RngCore};
 
-use super::neighbourhood::{boundary, neighbourhoods, strays};
+use super::denoise::{denoised, Denoised};
+use super::neighbourhood::{boundary, neighbourhoods, noise, strays};
 use super::{propagate, Location, NormalSign, SurfacePoint, SurfaceSample, TargetSurface};
 use crate::bvh::BoxTree;
 use crate::{Aabb, Point3, TopologyError, Vector3};
@@ -25,6 +26,7 @@ pub struct PointCloud {
     points: Vec<Point3>,
     /// Zero where there is none.
     normals: Vec<Vector3>,
+    has_given_normals: bool,
     sign: NormalSign,
     is_on_boundary: Vec<bool>,
     strays: Vec<u32>,
@@ -32,6 +34,7 @@ pub struct PointCloud {
     spacing: Vec<f64>,
     /// How flat the neighbours of each point lie, 0..=1.
     flatness: Vec<f64>,
+    noise: f64,
     bounds: Aabb,
 }
 
@@ -51,6 +54,8 @@ impl PointCloud {
         Ok(Self {
             is_on_boundary: boundary(&around),
             strays: strays(&around),
+            noise: noise(&around),
+            has_given_normals: given.is_some(),
             flatness: around.iter().map(|n| n.flatness).collect(),
             spacing: around.iter().map(|n| n.area.sqrt()).collect(),
             normals: around.into_iter().map(|n| n.normal).collect(),
@@ -70,6 +75,25 @@ impl PointCloud {
     /// the neighbours are from each other. Sparse regions of an uneven cloud are no strays.
     pub fn strays(&self) -> &[u32] {
         &self.strays
+    }
+
+    /// How far points lie off the planes of their neighbours in another way than these neighbours do, as a share of the
+    /// root of their mean squared distance, in the median. Exact samples of a surface come to 0.02, sparse ones of
+    /// shapes with thin parts to 0.06, noise of half the distance to the next point to 0.15.
+    pub fn noise(&self) -> f64 {
+        self.noise
+    }
+
+    /// The cloud without its noise: points are moved across into the planes of their neighbours, and those that stay far
+    /// off are left out. None where the points are exact; see [`Self::noise`].
+    pub fn denoised(&self) -> Option<Denoised> {
+        denoised(
+            &self.tree,
+            &self.points,
+            &self.normals,
+            self.has_given_normals,
+            self.noise,
+        )
     }
 
     /// The points, by row.
@@ -180,6 +204,10 @@ pub(super) struct PointTree {
 }
 
 impl PointTree {
+    pub(super) fn of(points: &[Point3]) -> Self {
+        Self::new(points, Aabb::of(points))
+    }
+
     fn new(points: &[Point3], bounds: Aabb) -> Self {
         let of_row = |row: usize| Aabb {
             min: points[row],
