@@ -17,6 +17,7 @@ const SAMPLING: SamplingConfig = SamplingConfig {
     face_uniform: 0.5,
     normal_bias: Some(0.3),
     n_hard: 100,
+    mutual: 0.7,
     overlap: Overlap {
         target_exceeds: false,
         mesh_exceeds: false,

@@ -44,6 +44,11 @@ impl Boundary {
         }
     }
 
+    /// Whether the mesh is closed.
+    pub(crate) fn is_empty(&self) -> bool {
+        !self.is_vertex.iter().any(|&is| is)
+    }
+
     /// Whether the place in triangle `t` lies on the boundary.
     pub(crate) fn holds(&self, t: usize, barycentric: [f64; 3]) -> bool {
         (0..3).any(|k| {

@@ -65,6 +65,9 @@ pub struct SamplingConfig {
     pub n_hard: usize,
     /// Which pairs at open boundaries are left out.
     pub overlap: Overlap,
+    /// With a target that is only a part, a sample of the mesh counts if the way to its closest point and from there back
+    /// to the mesh ends no farther from it than this share of the way there, ≥ 0. The less, the stricter.
+    pub mutual: f64,
 }
 
 /// Which surface reaches beyond the other. A place beyond has its closest point on the other's open boundary, and
@@ -137,6 +140,11 @@ impl<'a> SurfaceMatcher<'a> {
         self.attraction = (!is_even).then(|| attraction.clone());
     }
 
+    /// Whether the mesh ends openly anywhere.
+    pub fn has_boundary(&self) -> bool {
+        !self.boundary.is_empty()
+    }
+
     /// How much of each surface lies beyond the other, as a share of `n_samples` random places on each: their closest
     /// point is on the other's open boundary, and farther than `distance`.
     pub fn beyond(
@@ -152,6 +160,7 @@ impl<'a> SurfaceMatcher<'a> {
             normal_bias: None,
             n_hard: 0,
             overlap: Overlap::default(),
+            mutual: 1.0,
         };
         let all = self.resample(x, &config, rng, &mut Profile::off());
         let share = |matches: &[SurfaceMatch]| {

@@ -11,9 +11,8 @@ use rayon::prelude::*;
 use crate::boundary::Boundary;
 use crate::matching::{SamplingConfig, SurfaceMatch};
 
-/// With a target that is only a part, a sample of the mesh counts if the way to the target and back ends no farther from
-/// it than this share of the way there, and a little more, in longest sides: the sliding of a surface that fits.
-const MUTUAL: f64 = 0.7;
+/// The way to the target and back may end a little farther from where it began than [`SamplingConfig::mutual`] says, in
+/// longest sides: the sliding of a surface that fits.
 const MUTUAL_NEAR: f64 = 0.003;
 /// Pairs whose attraction is below this do not count.
 const LEAST_ATTRACTION: f64 = 1e-6;
@@ -114,7 +113,7 @@ impl Side<'_> {
     ///
     /// The back of a leg that was scanned from the front is near the scan, too; what is closest to the scan is the front.
     fn is_mutual(&self, place: &Point3, point: &Point3) -> bool {
-        let limit = MUTUAL * (place - point).norm() + MUTUAL_NEAR;
+        let limit = self.config.mutual * (place - point).norm() + MUTUAL_NEAR;
         let back = self.bvh.closest_point(point);
         back.is_some_and(|back| (back.point - place).norm() <= limit)
     }

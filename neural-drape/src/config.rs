@@ -105,7 +105,8 @@ pub enum AngleReference {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum OverlapMode {
-    /// Each that does so by more than a twentieth of its area in the initial shape.
+    /// Each that does so by more than a twentieth of its area in the initial shape. A source that ends openly is matched
+    /// as if it did for the first quarter of the run: only pairs that surely belong together lead it.
     Auto,
     /// Neither: both shapes are whole.
     Full,
@@ -136,7 +137,7 @@ pub struct Sampling {
 }
 
 impl Sampling {
-    pub(crate) fn at(&self, iteration: usize, overlap: Overlap) -> SamplingConfig {
+    pub(crate) fn at(&self, iteration: usize, overlap: Overlap, mutual: f64) -> SamplingConfig {
         let doublings = self
             .double_every
             .map_or(0, |every| iteration / every.max(1));
@@ -152,6 +153,7 @@ impl Sampling {
             normal_bias: self.normal_bias,
             n_hard: self.n_hard,
             overlap,
+            mutual,
         }
     }
 }

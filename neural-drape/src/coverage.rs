@@ -21,6 +21,15 @@ const FAR: f64 = 0.15;
 /// From there the part spreads along the surface to where both are below this.
 const NEAR: f64 = 0.04;
 
+/// For this share of a run, a mesh that ends openly counts as reaching beyond the target where nothing else is said: only
+/// pairs that surely belong together lead it. Where the initial shape has a mouth that is closed and the target one that
+/// is open, the lower lip is nearest to the upper one of the target, and the sheets behind lips are as near as the lips.
+const CAUTIOUS: f64 = 0.25;
+/// [`SamplingConfig::mutual`](mesh_loss::SamplingConfig::mutual) as long as that lasts.
+const CAUTIOUS_MUTUAL: f64 = 0.4;
+/// The same with a target that is only a part, from the start of the run to its end: a scale that is annealed.
+const MUTUAL: [f64; 2] = [0.8, 0.45];
+
 impl OverlapMode {
     /// Which parts beyond are left out.
     pub(crate) fn resolved(self, beyond: &Beyond) -> Overlap {
@@ -37,6 +46,46 @@ impl OverlapMode {
         Overlap {
             target_exceeds,
             mesh_exceeds,
+        }
+    }
+}
+
+/// Which pairs count in the course of a run.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Pairing {
+    /// Which parts beyond are left out.
+    pub(crate) overlap: Overlap,
+    n_cautious: usize,
+}
+
+impl Pairing {
+    /// For a mesh that ends openly or not, and a run of `n_iterations`.
+    pub(crate) fn new(
+        mode: OverlapMode,
+        beyond: &Beyond,
+        ends_openly: bool,
+        n_iterations: usize,
+    ) -> Self {
+        let overlap = mode.resolved(beyond);
+        let is_cautious = mode == OverlapMode::Auto && ends_openly && !overlap.mesh_exceeds;
+        let share = if is_cautious { CAUTIOUS } else { 0.0 };
+        Self {
+            overlap,
+            n_cautious: (share * n_iterations as f64) as usize,
+        }
+    }
+
+    /// What the matcher leaves out in an iteration, and its `mutual`; `progress` through the run is 0..=1.
+    pub(crate) fn at(&self, iteration: usize, progress: f64) -> (Overlap, f64) {
+        if iteration < self.n_cautious {
+            let overlap = Overlap {
+                mesh_exceeds: true,
+                ..self.overlap
+            };
+            (overlap, CAUTIOUS_MUTUAL)
+        } else {
+            let [start, end] = MUTUAL;
+            (self.overlap, start + (end - start) * progress)
         }
     }
 }

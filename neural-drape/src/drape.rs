@@ -12,7 +12,7 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
 use crate::config::{Descent, DrapeConfig, ParametrizationConfig, Stage, Weights};
-use crate::coverage::{lacking, FAR_BEYOND, N_BEYOND};
+use crate::coverage::{lacking, Pairing, FAR_BEYOND, N_BEYOND};
 use crate::network::{Network, NetworkMap};
 use crate::regions::{Follow, Guidance, Regions};
 use crate::terms::{accumulate, Structure, Term, TermReport};
@@ -58,7 +58,7 @@ pub struct Drape<'a> {
     matcher: SurfaceMatcher<'a>,
     structure: Structure<'a>,
     beyond: Beyond,
-    overlap: Overlap,
+    pairing: Pairing,
     input: DrapeInput<'a>,
     is_uncovered: VertexData<bool>,
     guidance: Guidance,
@@ -91,7 +91,9 @@ impl<'a> Drape<'a> {
         let mut rng = ChaCha8Rng::seed_from_u64(config.seed);
         let mut matcher = SurfaceMatcher::new(input.triangulation, &initial, input.target, frame);
         let mut beyond = matcher.beyond(&initial, N_BEYOND, FAR_BEYOND, &mut rng);
-        let overlap = config.overlap.resolved(&beyond);
+        let n_iterations = config.stages.iter().map(|s| s.n_iterations).sum();
+        let ends_openly = matcher.has_boundary();
+        let pairing = Pairing::new(config.overlap, &beyond, ends_openly, n_iterations);
         let is_uncovered = lacking(&input, &initial, &frame, config.overlap, &mut beyond);
         let none = Regions::none(initial.len());
         let guidance = Guidance::new(
@@ -104,7 +106,7 @@ impl<'a> Drape<'a> {
         matcher.set_attraction(guidance.attraction());
         let mut drape = Self {
             beyond,
-            overlap,
+            pairing,
             input,
             is_uncovered,
             guidance,
@@ -115,7 +117,7 @@ impl<'a> Drape<'a> {
             structure: Structure::new(&input, &initial, &config),
             iteration: 0,
             stage_starts: config.stage_starts(),
-            n_iterations: config.stages.iter().map(|s| s.n_iterations).sum(),
+            n_iterations,
             gradient: VertexData::new(initial.len(), Vector3::zeros()),
             rng,
             profile: Profile::off(),
@@ -147,12 +149,13 @@ impl<'a> Drape<'a> {
             self.structure.anchor(self.input.triangulation, x);
         }
 
-        let sampling = self.config.sampling.at(self.iteration, self.overlap);
+        let (overlap, mutual) = self.pairing.at(self.iteration, progress);
+        let sampling = self.config.sampling.at(self.iteration, overlap, mutual);
         let x = self.parametrization.positions();
         let matches = self
             .matcher
             .resample(x, &sampling, &mut self.rng, &mut self.profile);
-        self.guidance.note(&matches, self.overlap);
+        self.guidance.note(&matches, self.pairing.overlap);
 
         let mut terms = self.add_distance_terms(&matches, &weights);
         self.matcher.recycle(matches);
@@ -206,7 +209,7 @@ impl<'a> Drape<'a> {
     fn settle(&mut self) -> Result<(), DrapeError> {
         let period = (self.n_iterations / N_FOLLOWS).max(1);
         let is_end = self.iteration >= self.n_iterations;
-        let follow = if is_end && self.overlap.mesh_exceeds {
+        let follow = if is_end && self.pairing.overlap.mesh_exceeds {
             Follow::End
         } else if is_end {
             Follow::Pieces
@@ -396,7 +399,7 @@ impl<'a> Drape<'a> {
 
     /// Whether parts of the mesh without a counterpart on the target are left out, beside those beyond its boundary.
     pub fn is_mesh_part_left_out(&self) -> bool {
-        self.overlap.mesh_exceeds || self.is_uncovered.iter().any(|&u| u)
+        self.pairing.overlap.mesh_exceeds || self.is_uncovered.iter().any(|&u| u)
     }
 
     /// How strongly each vertex is attracted: what [`Regions`] say, and 0 where the target has no counterpart.
@@ -406,7 +409,7 @@ impl<'a> Drape<'a> {
 
     /// Which parts beyond are left out.
     pub fn overlap(&self) -> Overlap {
-        self.overlap
+        self.pairing.overlap
     }
 
     fn descend(&mut self, rate: f64) -> Result<(), DrapeError> {

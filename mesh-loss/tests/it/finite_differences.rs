@@ -101,6 +101,7 @@ fn matches(s: &mut Setup, normal_bias: Option<f64>) -> Matches {
         normal_bias,
         n_hard: 20,
         overlap: mesh_loss::Overlap::default(),
+        mutual: 0.7,
     };
     SurfaceMatcher::new(&s.triangulation, &s.moved, &target, UNIT).resample(
         &s.moved,

@@ -22,6 +22,7 @@ fn pairs(
         normal_bias: Some(0.3),
         n_hard: 100,
         overlap,
+        mutual: 0.7,
     };
     let mut matcher = SurfaceMatcher::new(&triangulation, &rest, &target, UNIT);
     let attraction: VertexData<f64> = rest.iter().map(|p| attraction(p.z)).collect();

@@ -83,6 +83,7 @@ fn chamfer_of_a_shifted_plane_is_the_shift() {
         normal_bias: None,
         n_hard: 20,
         overlap: mesh_loss::Overlap::default(),
+        mutual: 0.7,
     };
     let mut rng = <rand_chacha::ChaCha8Rng as rand::SeedableRng>::seed_from_u64(3);
     let matches = SurfaceMatcher::new(&triangulation, &shifted, &target, UNIT).resample(
