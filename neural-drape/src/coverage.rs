@@ -199,6 +199,27 @@ mod tests {
     }
 
     #[test]
+    fn open_meshes_are_paired_cautiously_at_first_unless_told() {
+        let whole = Beyond {
+            of_target: 0.0,
+            of_mesh: 0.0,
+        };
+        let strict = |mode: OverlapMode, ends_openly: bool| {
+            let pairing = Pairing::new(mode, &whole, ends_openly, 100);
+            let is_strict = |i: &usize| pairing.at(*i, *i as f64 / 100.0).0.mesh_exceeds;
+            (0..100).filter(is_strict).count()
+        };
+        assert_eq!(strict(OverlapMode::Auto, true), 25);
+        assert_eq!(strict(OverlapMode::Auto, false), 0);
+        assert_eq!(strict(OverlapMode::Full, true), 0);
+        assert_eq!(strict(OverlapMode::TargetPartial, true), 100);
+
+        let part = Pairing::new(OverlapMode::TargetPartial, &whole, true, 100);
+        assert_eq!(part.at(0, 0.0).1, 0.8);
+        assert!((part.at(100, 1.0).1 - 0.45).abs() < 1e-12);
+    }
+
+    #[test]
     fn what_the_target_lacks_is_marked_and_nothing_else() {
         let (mesh, rest) = bust(-9.0).into_halfedge().unwrap();
         let triangulation = Triangulation::new(&mesh, &rest);

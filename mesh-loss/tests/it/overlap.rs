@@ -13,6 +13,16 @@ fn pairs(
     overlap: Overlap,
     attraction: impl Fn(f64) -> f64,
 ) -> (Positions, Matches) {
+    pairs_as(target, overlap, 0.7, attraction)
+}
+
+/// The same, as strict as `mutual` says.
+fn pairs_as(
+    target: PolygonSoup,
+    overlap: Overlap,
+    mutual: f64,
+    attraction: impl Fn(f64) -> f64,
+) -> (Positions, Matches) {
     let (mesh, rest) = flat().into_halfedge().expect("a sound shape");
     let triangulation = Triangulation::new(&mesh, &rest);
     let target = TriangleSoup::new(target).expect("a sound shape");
@@ -22,7 +32,7 @@ fn pairs(
         normal_bias: Some(0.3),
         n_hard: 100,
         overlap,
-        mutual: 0.7,
+        mutual,
     };
     let mut matcher = SurfaceMatcher::new(&triangulation, &rest, &target, UNIT);
     let attraction: VertexData<f64> = rest.iter().map(|p| attraction(p.z)).collect();
@@ -88,4 +98,27 @@ fn the_back_of_what_was_scanned_from_the_front_is_not_pulled_to_the_scan() {
     };
     assert!(lowest(Overlap::default()) < -0.3);
     assert!(lowest(part) > -0.1, "{}", lowest(part));
+}
+
+#[test]
+fn stricter_pairs_are_fewer_and_lead_less_far_along() {
+    let part = Overlap {
+        mesh_exceeds: true,
+        ..Overlap::default()
+    };
+    // Of pairs that lead far, how far the place is from where the way back ends, at most.
+    let (mut counts, mut lateral) = (Vec::new(), Vec::new());
+    for mutual in [1.2, 0.7, 0.4] {
+        let mut beside = scan();
+        beside.positions.iter_mut().for_each(|p| p.x += 0.3);
+        let (x, matches) = pairs_as(beside, part, mutual, |_| 1.0);
+        counts.push(matches.to_target.len());
+        let along = |m: &SurfaceMatch| m.offset(&x).xy().norm();
+        lateral.push(matches.to_target.iter().map(along).fold(0.0, f64::max));
+    }
+    assert!(
+        counts[0] > counts[1] && counts[1] > counts[2] && counts[2] > 100,
+        "{counts:?}"
+    );
+    assert!(lateral[2] < lateral[0], "{lateral:?}");
 }
