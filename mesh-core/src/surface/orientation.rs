@@ -217,7 +217,10 @@ pub(super) fn escapes(bvh: &TriangleBvh, t: u32, side: f64, lift: f64, k: usize)
         return false;
     };
     let [a, b, c, d] = spread(k);
-    let (from, slant) = (on_triangle(&corners, a, b), slanted(&normal, c, d));
+    let (from, slant) = (
+        on_triangle(&corners, a, b),
+        slanted(&normal, &corners, c, d),
+    );
     bvh.first_hit(&(from + normal * (side * lift)), &(slant * side))
         .is_none()
 }
@@ -231,7 +234,7 @@ fn vote(bvh: &TriangleBvh, t: u32, is_flipped: bool, lift: f64, k: usize) -> i64
     let normal = if is_flipped { -normal } else { normal };
     let [a, b, c, d] = spread(k);
     let from = on_triangle(&corners, a, b);
-    let slant = slanted(&normal, c, d);
+    let slant = slanted(&normal, &corners, c, d);
     let escapes = |sign: f64| {
         bvh.first_hit(&(from + normal * (sign * lift)), &(slant * sign))
             .is_none()
@@ -254,10 +257,10 @@ fn on_triangle([p, q, r]: &[Point3; 3], a: f64, b: f64) -> Point3 {
     p + (q - p) * (root * (1.0 - b)) + (r - p) * (root * b)
 }
 
-/// A direction on the side of `normal`, with density proportional to the cosine.
-fn slanted(normal: &Vector3, c: f64, d: f64) -> Vector3 {
-    let axis = Vector3::ith(normal.iamin(), 1.0);
-    let across = normal.cross(&axis).try_normalize(0.0).unwrap_or(axis);
+/// A direction on the side of `normal` of a triangle, with density proportional to the cosine; it turns with the triangle.
+fn slanted(normal: &Vector3, [p, q, _]: &[Point3; 3], c: f64, d: f64) -> Vector3 {
+    // A triangle with a normal has three sides.
+    let across = (q - p).try_normalize(0.0).unwrap_or_default();
     let along = normal.cross(&across);
     let (radius, angle) = (c.sqrt(), TAU * d);
     across * (radius * angle.cos()) + along * (radius * angle.sin()) + normal * (1.0 - c).sqrt()

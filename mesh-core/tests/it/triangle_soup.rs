@@ -2,7 +2,9 @@
 
 use mesh_core::{
     shapes, Location, NormalSign, Point3, PolygonSoup, TargetSurface, TopologyError, TriangleSoup,
+    Vector3,
 };
+use nalgebra::Rotation3;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
@@ -232,4 +234,29 @@ fn cracks_and_single_missing_faces_are_no_boundary_and_holes_are() {
         .filter(|h| half.is_on_boundary(&h.location))
         .count();
     assert!(open > 30, "{open}");
+}
+
+#[test]
+fn normals_turn_with_the_shape() {
+    // Loose triangles all over the place: no side of theirs is surely outside.
+    let mut rng = ChaCha8Rng::seed_from_u64(3);
+    let mut random = || Point3::from(Vector3::from_fn(|_, _| rng.random::<f64>()));
+    let loose = PolygonSoup {
+        positions: (0..900).map(|_| random()).collect(),
+        faces: (0..300)
+            .map(|t| vec![3 * t, 3 * t + 1, 3 * t + 2])
+            .collect(),
+    };
+    let turn = Rotation3::from_euler_angles(0.7, -1.1, 2.3);
+    let mut turned = loose.clone();
+    turned.positions.iter_mut().for_each(|p| *p = turn * *p);
+    let [loose, turned] = [loose, turned].map(|soup| TriangleSoup::new(soup).unwrap());
+    for index in 0..300 {
+        let middle = Location::Triangle {
+            index,
+            barycentric: [0.3, 0.3, 0.4],
+        };
+        let [n, m] = [&loose, &turned].map(|target| target.normal(&middle).unwrap());
+        assert!((turn * n - m).norm() < 1e-9, "triangle {index}");
+    }
 }
