@@ -21,9 +21,9 @@ const FAR: f64 = 0.15;
 /// From there the part spreads along the surface to where both are below this.
 const NEAR: f64 = 0.04;
 
-/// For this share of a run, a mesh that ends openly counts as reaching beyond the target where nothing else is said: only
-/// pairs that surely belong together lead it. Where the initial shape has a mouth that is closed and the target one that
-/// is open, the lower lip is nearest to the upper one of the target, and the sheets behind lips are as near as the lips.
+/// For this share of a run, a mesh that ends openly counts as reaching beyond the target where neither does: only pairs
+/// that surely belong together lead it. Where the initial shape has a mouth that is closed and the target one that is
+/// open, the lower lip is nearest to the upper one of the target, and the sheets behind lips are as near as the lips.
 const CAUTIOUS: f64 = 0.25;
 /// [`SamplingConfig::mutual`](mesh_loss::SamplingConfig::mutual) as long as that lasts.
 const CAUTIOUS_MUTUAL: f64 = 0.4;
@@ -67,7 +67,7 @@ impl Pairing {
         n_iterations: usize,
     ) -> Self {
         let overlap = mode.resolved(beyond);
-        let is_cautious = mode == OverlapMode::Auto && ends_openly && !overlap.mesh_exceeds;
+        let is_cautious = mode == OverlapMode::Auto && ends_openly && overlap == Overlap::default();
         let share = if is_cautious { CAUTIOUS } else { 0.0 };
         Self {
             overlap,
