@@ -11,7 +11,7 @@ use crate::{Point3, Vector3};
 /// neighbours if it is above the second; in between, part of the way. Exact clouds come to 0.02, sparse ones of shapes
 /// with thin parts to 0.06, noise of half the distance to the next point to 0.15.
 const NOISE: [f64; 2] = [0.08, 0.12];
-/// Neighbours count for a plane by this power of the cosine between normals: walls of something thin stay apart.
+/// Neighbours count for a plane by this power of the cosine between normals: sheets that meet at an angle stay apart.
 const SHARPNESS: i32 = 4;
 /// However their normals differ, neighbours count this much.
 const LEAST_WEIGHT: f64 = 1e-3;
@@ -33,7 +33,8 @@ pub struct Denoised {
 ///
 /// `p + s·n nᵀ(m − p)`, where `m` and `n` are mean and normal of the plane of least squares of the 24 nearest, which
 /// count by `(nᵢ·nⱼ)⁴`, and `s` in 0..=1 grows with the noise. One step of moving least squares (after Alexa et al.
-/// 2003) with normals that keep sheets apart (after Öztireli et al. 2009).
+/// 2003) with normals that keep edges sharp (after Öztireli et al. 2009). Parallel walls closer than the neighbours are
+/// not told apart: the signs of noisy normals are not known.
 pub(super) fn denoised(
     tree: &PointTree,
     points: &[Point3],
