@@ -120,13 +120,14 @@ impl Desk {
     /// Hands the drape what it has not seen yet; it is on disk by then, so that no drape that is taken up
     /// after a sudden end knows of edits that its session has lost.
     fn order_pending(&mut self) -> Result<()> {
-        if self.are_marks_pending() || self.are_parts_pending() {
+        let (marks, parts) = (self.are_marks_pending(), self.are_parts_pending());
+        if marks || parts {
             self.save();
         }
-        if self.are_marks_pending() {
+        if marks {
             self.order(Order::Marks(self.complete_marks()))?;
         }
-        if self.are_parts_pending() {
+        if parts {
             self.order(Order::Parts(self.session.document.parts.clone()))?;
         }
         Ok(())

@@ -1,8 +1,9 @@
 //! Parts of a triangle soup that do not belong to its outer surface: slivers, fins, crumbs and inner walls.
 //!
 //! Slivers have no area, so nothing is lost without them; but they can be long, and a closest point on one that sticks
-//! out is on no surface. The rest of a soup falls into patches, joined within by edges that exactly two triangles share. One patch is usually the
-//! shape; what hangs on it at edges of three or more triangles, floats beside it, or is closed in by it is not.
+//! out is on no surface. The rest of a soup falls into patches, joined within by edges that exactly two triangles share.
+//! One patch is usually the shape; what hangs on it at edges of three or more triangles, floats beside it, or is closed
+//! in by it is not.
 
 use super::orientation::escaping_share;
 use super::weld::Weld;

@@ -106,7 +106,7 @@ fn stricter_pairs_are_fewer_and_lead_less_far_along() {
         mesh_exceeds: true,
         ..Overlap::default()
     };
-    // Of pairs that lead far, how far the place is from where the way back ends, at most.
+    // How many pairs there are, and how far along the surface the farthest leads.
     let (mut counts, mut lateral) = (Vec::new(), Vec::new());
     for mutual in [1.2, 0.7, 0.4] {
         let mut beside = scan();

@@ -2,7 +2,7 @@
 
 use mesh_core::measure::corner_angle;
 use mesh_core::{shapes, Positions, TargetSurface, TriangleSoup, VertexId};
-use neural_drape::{Drape, DrapeInput, OverlapMode};
+use neural_drape::{Drape, DrapeConfig, DrapeInput, OverlapMode};
 
 use crate::setup::{on_ellipsoid, run, short, Pair};
 
@@ -13,6 +13,21 @@ fn holed() -> TriangleSoup {
     soup.faces = soup.faces.iter().filter(|f| is_low(f)).cloned().collect();
     soup.positions.iter_mut().for_each(|p| *p = on_ellipsoid(p));
     TriangleSoup::new(soup).expect("a shape with a hole")
+}
+
+/// A short run over a target that is a part.
+fn over_part<'a>(
+    pair: &'a Pair,
+    target: &'a TriangleSoup,
+    n_iterations: usize,
+) -> (DrapeInput<'a>, DrapeConfig) {
+    let input = DrapeInput {
+        target,
+        ..pair.input()
+    };
+    let mut config = short("standard", n_iterations);
+    config.overlap = OverlapMode::TargetPartial;
+    (input, config)
 }
 
 /// Mean change of the corner angles of the triangles all of whose corners are in `part`, in degrees.
@@ -33,12 +48,7 @@ fn angle_change(pair: &Pair, x: &Positions, part: &[VertexId]) -> f64 {
 fn what_lies_over_a_hole_keeps_its_initial_shape_and_closes_it() {
     let pair = Pair::new(shapes::quad_sphere(12));
     let target = holed();
-    let input = DrapeInput {
-        target: &target,
-        ..pair.input()
-    };
-    let mut config = short("standard", 200);
-    config.overlap = OverlapMode::TargetPartial;
+    let (input, config) = over_part(&pair, &target, 200);
     let (x, _) = run(input, config).expect("a sound pair");
 
     let cap: Vec<VertexId> = x.ids().filter(|&v| pair.rest[v].z > 0.75).collect();
@@ -57,12 +67,7 @@ fn what_lies_over_a_hole_keeps_its_initial_shape_and_closes_it() {
 fn a_kept_drape_over_a_part_goes_on_to_the_same_bits() {
     let pair = Pair::new(shapes::quad_sphere(16));
     let target = holed();
-    let input = DrapeInput {
-        target: &target,
-        ..pair.input()
-    };
-    let mut config = short("standard", 30);
-    config.overlap = OverlapMode::TargetPartial;
+    let (input, mut config) = over_part(&pair, &target, 30);
     // So few that vertices without pairs in one iteration have them in another.
     config.sampling.n_samples = 400;
     config.sampling.double_every = None;
