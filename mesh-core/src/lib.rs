@@ -18,8 +18,10 @@
 //! Points, vectors and matrices are those of [`nalgebra`], which is exported again.
 
 mod attribute;
+mod boundary;
 mod build;
 pub mod bvh;
+mod connectivity;
 mod error;
 mod fans;
 mod halfedge;
@@ -30,30 +32,37 @@ pub mod measure;
 mod profile;
 mod proxy;
 mod rotation;
+mod rows;
 pub mod sampling;
 pub mod shapes;
+mod side;
 mod soup;
 pub mod surface;
 mod triangulation;
+mod union_find;
 mod weld;
 
 pub use attribute::{Attribute, EdgeData, FaceData, HalfedgeData, Positions, VertexData};
+pub use boundary::Boundary;
 pub use bvh::TriangleBvh;
+pub use connectivity::Pieces;
 pub use error::TopologyError;
 pub use fans::{is_on_side, TriangleFans, ON_SIDE};
-pub use halfedge::{HalfedgeMesh, Pieces};
+pub use halfedge::HalfedgeMesh;
 pub use ids::{EdgeId, FaceId, HalfedgeId, Id, VertexId};
 pub use landmark::{Landmark, LandmarkKind, MeshPoint};
 pub use measure::{Aabb, UnitFrame};
 pub use profile::{Clock, Profile, Span};
 pub use proxy::Proxy;
 pub use rotation::nearest_rotation;
+pub use rows::Rows;
 pub use soup::PolygonSoup;
 pub use surface::{
     Denoised, Location, NormalSign, PointCloud, Strays, SurfacePoint, SurfaceSample, SurfelCloud,
     TargetSurface, TriangleSoup,
 };
 pub use triangulation::{Triangulation, TriangulationEdge};
+pub use union_find::UnionFind;
 pub use weld::Weld;
 
 pub use nalgebra;

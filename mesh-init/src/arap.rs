@@ -50,7 +50,7 @@ impl ArapSolver {
         rest: &Positions,
         held: &[VertexId],
     ) -> Result<Self, SolveError> {
-        let stay = held_and_unreached(triangulation, rest.len(), held);
+        let stay = held_and_unreached(triangulation, held);
         Ok(Self {
             cells: Cells::new(triangulation, rest),
             solve: FixedSolve::new(&cotan_laplacian(triangulation, rest), &stay)?,

@@ -64,7 +64,7 @@ impl Deformer {
             handle_of.push(row);
         }
         let rows: Vec<VertexId> = handles.iter().map(|&(v, _)| v).collect();
-        let is_led = is_reached(&triangulation, start.len(), &rows);
+        let is_led = is_reached(&triangulation, &rows);
         let (led, carried) = start.ids().partition(|&v| is_led[v]);
         let (mut all, mut rigid) = (None, None);
         if !rows.is_empty() {

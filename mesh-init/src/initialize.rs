@@ -1,6 +1,6 @@
 //! From landmarks to the shape that draping starts at.
 
-use mesh_core::{HalfedgeMesh, Landmark, Point3, Positions, Triangulation, UnitFrame};
+use mesh_core::{Landmark, Point3, Positions, Triangulation, UnitFrame};
 
 use crate::affine::{fit_affine, AffineFit, FramePair, PointPair, SimilarityPrior};
 use crate::deformer::{Deformer, Pull};
@@ -9,8 +9,8 @@ use crate::{InitError, SimilarConfig};
 /// What an initial deformation is found from.
 #[derive(Clone, Copy, Debug)]
 pub struct InitInput<'a> {
-    /// The source's connectivity.
-    pub mesh: &'a HalfedgeMesh,
+    /// The source's polygons as triangles.
+    pub triangulation: &'a Triangulation,
     /// The source's shape.
     pub rest: &'a Positions,
     /// Places on the source and where they belong.
@@ -122,7 +122,7 @@ pub fn initialize(input: InitInput<'_>, config: &InitConfig) -> Result<Initial, 
 /// As [`initialize`].
 pub fn adjust(input: InitInput<'_>, present: &Positions) -> Result<Positions, InitError> {
     check(&input)?;
-    check_length(input.mesh.n_vertices(), present)?;
+    check_length(input.triangulation.n_vertices(), present)?;
     deformer(&input, present, &InitConfig::paper())?.solve(&targets(input.landmarks))
 }
 
@@ -132,9 +132,8 @@ fn deformer(
     placed: &Positions,
     config: &InitConfig,
 ) -> Result<Deformer, InitError> {
-    let triangulation = Triangulation::new(input.mesh, input.rest);
     let pulls = input.landmarks.iter().map(|l| pull(l, placed));
-    Deformer::new(triangulation, placed, pulls.collect(), config)
+    Deformer::new(input.triangulation.clone(), placed, pulls.collect(), config)
 }
 
 /// What a landmark pulls at: the vertex that counts most.
@@ -162,8 +161,8 @@ pub(crate) fn check_length(n_vertices: usize, x: &Positions) -> Result<(), InitE
 }
 
 fn check(input: &InitInput<'_>) -> Result<(), InitError> {
-    check_length(input.mesh.n_vertices(), input.rest)?;
-    check_landmarks(input.mesh.n_vertices(), input.landmarks)
+    check_length(input.triangulation.n_vertices(), input.rest)?;
+    check_landmarks(input.triangulation.n_vertices(), input.landmarks)
 }
 
 pub(crate) fn check_landmarks(n_vertices: usize, landmarks: &[Landmark]) -> Result<(), InitError> {

@@ -15,12 +15,17 @@
 //! The crates that the signatures name, [`mesh_core`] and [`mesh_operators`], are exported again.
 //!
 //! ```
-//! use mesh_init::mesh_core::{shapes, Landmark, Point3, UnitFrame, VertexId};
+//! use mesh_init::mesh_core::{shapes, Landmark, Point3, Triangulation, UnitFrame, VertexId};
 //! use mesh_init::{initialize, InitConfig, InitInput};
 //! let (mesh, rest) = shapes::quad_sphere(8).into_halfedge()?;
 //! let stretched = rest.map(|p| Point3::new(3.0 * p.x, p.y, p.z));
 //! let landmarks = [0, 8, 40, 100, 200].map(|v| Landmark::new(VertexId::new(v), stretched[VertexId::new(v)]));
-//! let input = InitInput { mesh: &mesh, rest: &rest, landmarks: &landmarks, target_frame: UnitFrame::principal(stretched.as_slice()) };
+//! let input = InitInput {
+//!     triangulation: &Triangulation::new(&mesh, &rest),
+//!     rest: &rest,
+//!     landmarks: &landmarks,
+//!     target_frame: UnitFrame::principal(stretched.as_slice()),
+//! };
 //! let initial = initialize(input, &InitConfig::paper())?;
 //! assert!(initial.positions.iter().zip(&stretched).all(|(p, q)| (p - q).norm() < 1e-6));
 //! # Ok::<(), Box<dyn std::error::Error>>(())

@@ -102,7 +102,7 @@ impl SimilarSolver {
         }
         let system = &laplacian + &(&bending * &laplacian) + diagonal(pull.into_iter());
         let is_landmark = |v: &VertexId| landmarks.contains(v);
-        let stay = held_and_unreached(triangulation, n, landmarks);
+        let stay = held_and_unreached(triangulation, landmarks);
         let stay: Vec<VertexId> = stay.into_iter().filter(|v| !is_landmark(v)).collect();
         Ok(Self {
             solve: FixedSolve::new(&system, &stay)?,

@@ -1,16 +1,16 @@
 //! Target surfaces: what can be draped onto. A target needs no connectivity.
 
-mod boundary;
 mod denoise;
 mod exposure;
 mod neighbourhood;
+mod open_boundary;
 mod orientation;
 mod point_cloud;
 mod propagate;
 mod stray;
 mod surfels;
 mod triangle_soup;
-mod weld;
+mod welded;
 
 pub use denoise::Denoised;
 pub use exposure::is_exposed;

@@ -6,7 +6,7 @@ use nalgebra::{Matrix3, SymmetricEigen};
 use rayon::prelude::*;
 
 use super::point_cloud::PointTree;
-use crate::{Point3, Vector3};
+use crate::{Point3, UnionFind, Vector3};
 
 /// Neighbours that make up a surrounding.
 const K: usize = 24;
@@ -116,8 +116,8 @@ pub(super) fn strays(neighbourhoods: &[Neighbourhood]) -> Vec<u32> {
     let mut sizes = vec![0usize; neighbourhoods.len()];
     let mut areas = vec![0.0; neighbourhoods.len()];
     for (&g, n) in group_of.iter().zip(neighbourhoods) {
-        sizes[g as usize] += 1;
-        areas[g as usize] += n.area;
+        sizes[g] += 1;
+        areas[g] += n.area;
     }
     let usual = median(neighbourhoods.iter().map(|n| n.area));
     let is_loose = |g: usize| {
@@ -125,21 +125,14 @@ pub(super) fn strays(neighbourhoods: &[Neighbourhood]) -> Vec<u32> {
         is_small && areas[g] > LOOSE * LOOSE * usual * sizes[g] as f64
     };
     (0..neighbourhoods.len())
-        .filter(|&row| is_alone[row] || is_loose(group_of[row] as usize))
+        .filter(|&row| is_alone[row] || is_loose(group_of[row]))
         .map(|row| row as u32)
         .collect()
 }
 
-/// The lowest row of the group of each point: points are joined that are among the nearest of each other.
-fn groups(neighbourhoods: &[Neighbourhood], is_out: &[bool]) -> Vec<u32> {
-    let mut parent: Vec<u32> = (0..neighbourhoods.len() as u32).collect();
-    fn root(parent: &mut [u32], mut row: u32) -> u32 {
-        while parent[row as usize] != row {
-            parent[row as usize] = parent[parent[row as usize] as usize];
-            row = parent[row as usize];
-        }
-        row
-    }
+/// The point that stands for the group of each point: points are joined that are among the nearest of each other.
+fn groups(neighbourhoods: &[Neighbourhood], is_out: &[bool]) -> Vec<usize> {
+    let mut groups = UnionFind::new(neighbourhoods.len());
     for (row, n) in (0u32..).zip(neighbourhoods) {
         let joined = n.nearest.iter().filter(|&&other| {
             other != NONE
@@ -148,14 +141,10 @@ fn groups(neighbourhoods: &[Neighbourhood], is_out: &[bool]) -> Vec<u32> {
                 && !is_out[row as usize]
                 && !is_out[other as usize]
         });
-        for &other in joined {
-            let (a, b) = (root(&mut parent, row), root(&mut parent, other));
-            parent[a.max(b) as usize] = a.min(b);
-        }
+        joined.for_each(|&other| groups.union(row as usize, other as usize));
     }
-    (0..parent.len() as u32)
-        .map(|row| root(&mut parent, row))
-        .collect()
+    let rows = 0..neighbourhoods.len();
+    rows.map(|row| groups.find(row)).collect()
 }
 
 /// The upper median; 0 of nothing.

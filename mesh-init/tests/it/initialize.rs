@@ -18,7 +18,7 @@ fn run(
     config: &InitConfig,
 ) -> Result<Initial, InitError> {
     let input = InitInput {
-        mesh: &s.mesh,
+        triangulation: &s.triangulation,
         rest: &s.rest,
         landmarks,
         target_frame: UnitFrame::principal(goal.as_slice()),
