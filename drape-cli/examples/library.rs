@@ -2,6 +2,8 @@
 //!
 //! Without landmarks, so source and target must stand alike; `Landmark::new(vertex, point)` adds them.
 
+use std::sync::Arc;
+
 use mesh_core::{io, Landmark, TargetSurface, TriangleSoup, Triangulation};
 use mesh_init::{initialize, InitConfig, InitInput};
 use mesh_metrics::{evaluate, EvaluationConfig, EvaluationInput};
@@ -16,7 +18,7 @@ fn main() -> anyhow::Result<()> {
     // Vertices that the file splits along seams of texture coordinates or normals move as one.
     let weld = file.soup().weld(0.0);
     let (mesh, rest) = weld.soup.clone().into_halfedge()?;
-    let target = TriangleSoup::new(io::read_soup(target)?)?;
+    let target: Arc<dyn TargetSurface> = Arc::new(TriangleSoup::new(io::read_soup(target)?)?);
     let landmarks: Vec<Landmark> = Vec::new();
 
     let input = InitInput {
@@ -27,8 +29,9 @@ fn main() -> anyhow::Result<()> {
     };
     let initial = initialize(input, &InitConfig::standard())?.positions;
 
+    let rest = Arc::new(rest);
     let input = DrapeInput {
-        triangulation: &Triangulation::new(&mesh, &rest),
+        triangulation: &Arc::new(Triangulation::new(&mesh, &rest)),
         rest: &rest,
         initial: &initial,
         target: &target,
@@ -45,7 +48,7 @@ fn main() -> anyhow::Result<()> {
             mesh: &mesh,
             rest: &rest,
             draped: &draped,
-            target: &target,
+            target: target.as_ref(),
             landmarks: &landmarks,
             truth: None,
         },

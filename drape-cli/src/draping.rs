@@ -23,7 +23,7 @@ pub(crate) struct Draped {
 }
 
 /// What the run takes as lying beyond the other shape.
-fn left_out(drape: &Drape<'_>) -> Vec<String> {
+fn left_out(drape: &Drape) -> Vec<String> {
     let (beyond, overlap) = (drape.beyond(), drape.overlap());
     [
         (overlap.target_exceeds, beyond.of_target, "target", "source"),
@@ -64,7 +64,7 @@ pub(crate) fn drape(
         triangulation: &source.triangulation,
         rest: &source.rest,
         initial: task.initial,
-        target: task.pair.target.over.as_ref(),
+        target: &task.pair.target.over,
         landmarks: &task.pair.landmarks,
     };
     let mut drape = parts.time("set-up", || Drape::new(input, task.config))?;

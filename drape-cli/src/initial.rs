@@ -56,7 +56,7 @@ pub(crate) fn deform(pair: &Pair, start: Start) -> anyhow::Result<Initial> {
         .flatten();
     let placed = match &pose {
         Some(pose) => pair.source.rest.map(|p| pose.apply(p)),
-        None => pair.source.rest.clone(),
+        None => pair.source.rest.as_ref().clone(),
     };
     let input = InitInput {
         mesh: &pair.source.mesh,

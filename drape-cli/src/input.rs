@@ -21,8 +21,8 @@ use crate::seams::{widest_gap, Seams};
 /// are one vertex here.
 pub(crate) struct Source {
     pub(crate) mesh: HalfedgeMesh,
-    pub(crate) rest: Positions,
-    pub(crate) triangulation: Triangulation,
+    pub(crate) rest: Arc<Positions>,
+    pub(crate) triangulation: Arc<Triangulation>,
     /// The vertices of the file, and which of them are one.
     pub(crate) weld: Weld,
 }
@@ -43,8 +43,8 @@ impl Source {
         );
         Ok(Self {
             mesh,
-            rest,
-            triangulation,
+            rest: Arc::new(rest),
+            triangulation: Arc::new(triangulation),
             weld,
         })
     }
