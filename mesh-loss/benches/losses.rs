@@ -4,6 +4,7 @@
 use std::sync::Arc;
 
 use criterion::{criterion_group, criterion_main, BenchmarkId, Criterion, Throughput};
+use mesh_core::sampling::SeededRng;
 use mesh_core::{
     shapes, Point3, Positions, Profile, TargetSurface, TriangleSoup, Triangulation, UnitFrame,
     Vector3, VertexData,
@@ -12,8 +13,6 @@ use mesh_loss::{
     AreaKl, Chamfer, Conformal, CornerAngle, Drift, Flip, FoldBarrier, LocalShape, Loss,
     NormalAgreement, Overlap, SamplingConfig, SurfaceMatcher, TriangleQuality, WorstDistance,
 };
-use rand::SeedableRng;
-use rand_chacha::ChaCha8Rng;
 
 const SAMPLING: SamplingConfig = SamplingConfig {
     n_samples: 4000,
@@ -49,7 +48,7 @@ fn losses(c: &mut Criterion) {
             scale: 1.0,
         };
         let mut matcher = SurfaceMatcher::new(&t, &x, &target, frame);
-        let mut rng = ChaCha8Rng::seed_from_u64(0);
+        let mut rng = SeededRng::new(0);
         let mut profile = Profile::off();
         let mut group = c.benchmark_group("resample");
         group.bench_function(BenchmarkId::from_parameter(x.len()), |b| {

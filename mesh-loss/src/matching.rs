@@ -3,12 +3,11 @@
 use std::sync::Arc;
 
 use mesh_core::measure::triangle_area;
-use mesh_core::sampling::{TrianglePlace, TriangleSampler};
+use mesh_core::sampling::{SeededRng, TrianglePlace, TriangleSampler};
 use mesh_core::{
     Point3, Positions, Profile, TargetSurface, TriangleBvh, TriangleFans, Triangulation, UnitFrame,
     Vector3, VertexData, VertexId,
 };
-use rand::RngCore;
 
 use crate::boundary::Boundary;
 use crate::hard_places::{HardCorners, HardPlaces};
@@ -154,7 +153,7 @@ impl SurfaceMatcher {
         x: &Positions,
         n_samples: usize,
         distance: f64,
-        rng: &mut dyn RngCore,
+        rng: &mut SeededRng,
     ) -> Beyond {
         let config = SamplingConfig {
             n_samples,
@@ -194,7 +193,7 @@ impl SurfaceMatcher {
         &mut self,
         x: &Positions,
         config: &SamplingConfig,
-        rng: &mut dyn RngCore,
+        rng: &mut SeededRng,
         profile: &mut Profile,
     ) -> Matches {
         profile.time("refit", || self.bvh.refit(self.triangulation.corners(x)));
@@ -245,7 +244,7 @@ impl SurfaceMatcher {
         &self,
         x: &Positions,
         config: &SamplingConfig,
-        rng: &mut dyn RngCore,
+        rng: &mut SeededRng,
     ) -> Vec<TrianglePlace> {
         let n_by_face = (config.n_samples as f64 * config.face_uniform).round() as usize;
         let n_by_area = config.n_samples.saturating_sub(n_by_face);

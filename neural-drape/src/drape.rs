@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use mesh_core::sampling::SeededRng;
 use mesh_core::{
     Landmark, Positions, Profile, TargetSurface, Triangulation, UnitFrame, Vector3, VertexData,
     VertexId,
@@ -10,8 +11,6 @@ use mesh_loss::{
     Beyond, Chamfer, HardCorners, LandmarkDistance, Matches, NormalAgreement, Overlap,
     SurfaceMatcher, WorstDistance,
 };
-use rand::SeedableRng;
-use rand_chacha::ChaCha8Rng;
 
 use crate::check::MAX_ITERATIONS;
 use crate::config::{Descent, DrapeConfig, ParametrizationConfig, Stage, Weights};
@@ -74,7 +73,7 @@ pub struct Drape {
     n_iterations: usize,
     stage_starts: Vec<usize>,
     gradient: VertexData<Vector3>,
-    rng: ChaCha8Rng,
+    rng: SeededRng,
     profile: Profile,
 }
 
@@ -98,7 +97,7 @@ impl Drape {
                 Box::new(Vertices::new(input.triangulation, &initial, vertices)?)
             }
         };
-        let mut rng = ChaCha8Rng::seed_from_u64(config.seed);
+        let mut rng = SeededRng::new(config.seed);
         let mut matcher = SurfaceMatcher::new(input.triangulation, &initial, input.target, frame);
         let mut beyond = matcher.beyond(&initial, N_BEYOND, FAR_BEYOND, &mut rng);
         let n_iterations = config.stages.iter().map(|s| s.n_iterations).sum();
@@ -349,7 +348,7 @@ impl Drape {
         DrapeState::write(|state| {
             state.count(self.iteration);
             state.count(self.n_iterations);
-            state.word_position(self.rng.get_word_pos());
+            state.word_position(self.rng.word_position());
             let hard = self.matcher.hard_corners();
             state.counts(&hard.of_mesh);
             state.counts(&hard.of_target);
@@ -372,7 +371,7 @@ impl Drape {
         }
         self.extend(n_iterations - self.n_iterations);
         self.iteration = iteration;
-        self.rng.set_word_pos(reader.word_position()?);
+        self.rng.set_word_position(reader.word_position()?);
         let hard = HardCorners {
             of_mesh: reader.counts()?,
             of_target: reader.counts()?,

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use mesh_core::sampling::SeededRng;
 use mesh_core::{
     shapes, Landmark, MeshPoint, Point3, PolygonSoup, Positions, Profile, TargetSurface,
     TriangleSoup, Triangulation, UnitFrame, Vector3, VertexData, VertexId,
@@ -12,8 +13,6 @@ use mesh_loss::{
     WorstDistance,
 };
 use proptest::prelude::*;
-use rand::{Rng, SeedableRng};
-use rand_chacha::ChaCha8Rng;
 
 /// Step of the central differences: its error, h² times a third derivative, is about 1e-10 here.
 const STEP: f64 = 1e-5;
@@ -38,7 +37,7 @@ pub(crate) struct Setup {
     pub(crate) triangulation: Arc<Triangulation>,
     pub(crate) rest: Positions,
     pub(crate) moved: Positions,
-    pub(crate) rng: ChaCha8Rng,
+    pub(crate) rng: SeededRng,
 }
 
 /// A shape at rest and a random deformation of it.
@@ -46,7 +45,7 @@ pub(crate) fn setup(shape: usize, seed: u64, amount: f64) -> Setup {
     let soup = all_shapes().swap_remove(shape);
     let (mesh, rest) = soup.into_halfedge().expect("a shape is a mesh");
     let triangulation = Arc::new(Triangulation::new(&mesh, &rest));
-    let mut rng = ChaCha8Rng::seed_from_u64(seed);
+    let mut rng = SeededRng::new(seed);
     let moved = rest.map(|p| p + random_vector(&mut rng) * amount);
     Setup {
         triangulation,
@@ -56,8 +55,8 @@ pub(crate) fn setup(shape: usize, seed: u64, amount: f64) -> Setup {
     }
 }
 
-fn random_vector(rng: &mut ChaCha8Rng) -> Vector3 {
-    Vector3::from_fn(|_, _| rng.random_range(-1.0..1.0))
+fn random_vector(rng: &mut SeededRng) -> Vector3 {
+    Vector3::from_fn(|_, _| rng.uniform_in(-1.0..1.0))
 }
 
 /// Directional derivatives along random directions. A kink, or a curvature too strong for the step, shows as a
@@ -65,7 +64,7 @@ fn random_vector(rng: &mut ChaCha8Rng) -> Vector3 {
 fn assert_gradient(
     loss: &dyn Loss,
     x: &Positions,
-    rng: &mut ChaCha8Rng,
+    rng: &mut SeededRng,
 ) -> Result<(), TestCaseError> {
     let value_at =
         |x: &Positions| loss.accumulate(x, 1.0, &mut VertexData::new(x.len(), Vector3::zeros()));

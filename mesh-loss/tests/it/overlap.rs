@@ -2,12 +2,11 @@
 
 use std::sync::Arc;
 
+use mesh_core::sampling::SeededRng;
 use mesh_core::{
     shapes, PolygonSoup, Positions, Profile, TargetSurface, TriangleSoup, Triangulation, VertexData,
 };
 use mesh_loss::{Matches, Overlap, SamplingConfig, SurfaceMatch, SurfaceMatcher};
-use rand::SeedableRng;
-use rand_chacha::ChaCha8Rng;
 
 use crate::finite_differences::UNIT;
 
@@ -42,7 +41,7 @@ fn pairs_as(
     let mut matcher = SurfaceMatcher::new(&triangulation, &rest, &target, UNIT);
     let attraction: VertexData<f64> = rest.iter().map(|p| attraction(p.z)).collect();
     matcher.set_attraction(&attraction);
-    let mut rng = ChaCha8Rng::seed_from_u64(1);
+    let mut rng = SeededRng::new(1);
     let mut resample = || matcher.resample(&rest, &config, &mut rng, &mut Profile::off());
     // Far corners are kept in mind from one time to the next.
     let matches = (0..8).map(|_| resample()).last().expect("a sound shape");

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use mesh_core::sampling::SeededRng;
 use mesh_core::{
     shapes, Point3, Positions, Profile, TargetSurface, TriangleSoup, Triangulation, Vector3,
     VertexData,
@@ -88,7 +89,7 @@ fn chamfer_of_a_shifted_plane_is_the_shift() {
         overlap: mesh_loss::Overlap::default(),
         mutual: 0.7,
     };
-    let mut rng = <rand_chacha::ChaCha8Rng as rand::SeedableRng>::seed_from_u64(3);
+    let mut rng = SeededRng::new(3);
     let matches = SurfaceMatcher::new(&triangulation, &shifted, &target, UNIT).resample(
         &shifted,
         &config,
