@@ -115,7 +115,7 @@ impl Heat {
         match self {
             Self::Distance => (vertex_distances(x, scene.target.judged()).into_vec(), false),
             Self::Stretch => {
-                let stretch = face_stretch(&source.mesh, t, rest, x);
+                let stretch = face_stretch(t, rest, x);
                 ((0..t.len()).map(|k| stretch[t.parent(k)]).collect(), true)
             }
             Self::Angle => {

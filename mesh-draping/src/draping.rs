@@ -415,7 +415,7 @@ fn set_up(
 /// Landmarks that do not fit the source, or a deformation that cannot be solved for.
 pub fn adjusted(pair: &Pair, present: &Positions) -> Result<Positions, Error> {
     let input = InitInput {
-        mesh: pair.source.mesh(),
+        triangulation: pair.source.triangulation(),
         rest: pair.source.rest(),
         landmarks: &pair.landmarks,
         target_frame: pair.target.judged().principal_frame(),
@@ -450,11 +450,7 @@ fn left_out(drape: &Drape) -> impl Iterator<Item = Note> {
             Shape::Target,
             beyond.of_target,
         ),
-        (
-            drape.is_mesh_part_left_out(),
-            Shape::Source,
-            beyond.of_mesh,
-        ),
+        (drape.is_mesh_part_left_out(), Shape::Source, beyond.of_mesh),
     ];
     parts
         .into_iter()

@@ -133,7 +133,8 @@ impl Preset {
     pub fn to_toml(&self) -> String {
         // Settings are tables of numbers and names, so that this never fails.
         let body = toml::to_string(&self.drape).unwrap_or_default();
-        let initial = Value::try_from(self.initial).map_or_else(|_| String::new(), |v| v.to_string());
+        let initial =
+            Value::try_from(self.initial).map_or_else(|_| String::new(), |v| v.to_string());
         format!("preset = {:?}\ninitial = {initial}\n{body}", self.name)
     }
 }
@@ -282,8 +283,7 @@ mod tests {
 
     #[test]
     fn a_file_changes_what_it_names_and_nothing_else() {
-        let text =
-            "seed = 9\n[sampling]\nn_samples = 77\n[[stages]]\nn_iterations = 5\n";
+        let text = "seed = 9\n[sampling]\nn_samples = 77\n[[stages]]\nn_iterations = 5\n";
         let mut expected = DrapeConfig::standard();
         expected.seed = 9;
         expected.sampling.n_samples = 77;

@@ -1,13 +1,14 @@
 //! Random places on both surfaces and their closest points on the other: what the distance terms look at.
 
+use std::sync::Arc;
+
 use mesh_core::measure::triangle_area;
 use mesh_core::sampling::{SeededRng, TrianglePlace, TriangleSampler};
 use mesh_core::{
-    Point3, Positions, Profile, TargetSurface, TriangleBvh, TriangleFans, Triangulation, UnitFrame,
-    Vector3, VertexData, VertexId,
+    Point3, Positions, Profile, TargetSurface, TriangleBvh, Triangulation, UnitFrame, Vector3,
+    VertexData, VertexId,
 };
 
-use crate::boundary::Boundary;
 use crate::hard_places::{HardCorners, HardPlaces};
 use crate::pairing::{Side, NO_HINT};
 
@@ -92,13 +93,11 @@ pub struct Beyond {
 /// Draws samples on a moving mesh and on its target and matches each with its closest point.
 ///
 /// The mesh lives in `frame`, the target in its own coordinates; matches are in `frame`.
-pub struct SurfaceMatcher<'a> {
-    triangulation: &'a Triangulation,
-    target: &'a dyn TargetSurface,
+pub struct SurfaceMatcher {
+    triangulation: Arc<Triangulation>,
+    target: Arc<dyn TargetSurface>,
     frame: UnitFrame,
     bvh: TriangleBvh,
-    fans: TriangleFans,
-    boundary: Boundary,
     by_face: TriangleSampler,
     hints: Hints,
     hard: HardPlaces,
@@ -108,24 +107,22 @@ pub struct SurfaceMatcher<'a> {
     used: Matches,
 }
 
-impl<'a> SurfaceMatcher<'a> {
+impl SurfaceMatcher {
     /// A matcher for the mesh at `x`, whose coordinates are those of `frame`.
     pub fn new(
-        triangulation: &'a Triangulation,
+        triangulation: &Arc<Triangulation>,
         x: &Positions,
-        target: &'a dyn TargetSurface,
+        target: &Arc<dyn TargetSurface>,
         frame: UnitFrame,
     ) -> Self {
         Self {
-            triangulation,
-            target,
+            triangulation: Arc::clone(triangulation),
+            target: Arc::clone(target),
             frame,
             bvh: TriangleBvh::new(triangulation.corners(x).collect()),
-            fans: TriangleFans::new(triangulation.rows()),
-            boundary: Boundary::new(triangulation, x.len()),
             by_face: TriangleSampler::new(std::iter::repeat_n(1.0, triangulation.len())),
             hints: Hints::default(),
-            hard: HardPlaces::new(triangulation, x.len(), target),
+            hard: HardPlaces::new(triangulation, x.len(), target.as_ref()),
             attraction: None,
             pairs: Vec::new(),
             used: Matches::default(),
@@ -141,7 +138,7 @@ impl<'a> SurfaceMatcher<'a> {
 
     /// Whether the mesh ends openly anywhere.
     pub fn has_boundary(&self) -> bool {
-        !self.boundary.is_empty()
+        !self.triangulation.boundary().is_empty()
     }
 
     /// How much of each surface lies beyond the other, as a share of `n_samples` random places on each: their closest
@@ -200,13 +197,11 @@ impl<'a> SurfaceMatcher<'a> {
         self.hints.of_places.resize(places.len(), NO_HINT);
         self.hints.of_samples.resize(samples.len(), NO_HINT);
         let side = Side {
-            triangulation: self.triangulation,
+            triangulation: &self.triangulation,
             x,
-            target: self.target,
+            target: self.target.as_ref(),
             frame: self.frame,
             bvh: &self.bvh,
-            fans: &self.fans,
-            boundary: &self.boundary,
             attraction: self.attraction.as_ref(),
             config,
         };

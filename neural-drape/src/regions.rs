@@ -50,7 +50,7 @@ impl Regions {
         }
         match self.attraction.iter().find(|a| !(0.0..=1.0).contains(*a)) {
             Some(&value) => Err(DrapeError::Setting {
-                name: "attraction",
+                name: "attraction".to_owned(),
                 value,
                 expected: "between 0 and 1",
             }),
@@ -121,15 +121,14 @@ impl Guidance {
             })
             .collect();
         let bodies = triangulation
-            .connected_groups(n, |v| regions.rigid[v])
+            .connected_groups(|v| regions.rigid[v])
             .into_iter()
             .filter(|group| group.len() > 1)
             .map(|vertices| Body::new(vertices, rest, initial))
             .collect();
         let is_passive = |v: &VertexId| regions.attraction[*v] == 0.0 || regions.rigid[*v];
-        let is_faced = faced(triangulation, n);
         let mut carried: Vec<VertexId> = triangulation
-            .connected_groups(n, |v| is_faced[v])
+            .connected_groups(|v| triangulation.is_used(v))
             .into_iter()
             .filter(|piece| piece.iter().all(is_passive))
             .flatten()
@@ -139,7 +138,7 @@ impl Guidance {
         carried.iter().for_each(|&v| is_carried[v] = true);
         let led: Vec<VertexId> = initial
             .ids()
-            .filter(|&v| is_faced[v] && !is_carried[v])
+            .filter(|&v| triangulation.is_used(v) && !is_carried[v])
             .collect();
         if led.is_empty() {
             carried.clear();
@@ -244,9 +243,9 @@ impl Guidance {
         for &v in &self.led {
             is_loose[v] = area[v] > 0.0 && pairs[v] < FEW_PAIRS * density * area[v];
         }
-        let is_rim = rim(triangulation, x.len());
+        let is_rim = rim(triangulation);
         triangulation
-            .connected_groups(x.len(), |v| is_loose[v])
+            .connected_groups(|v| is_loose[v])
             .into_iter()
             .filter(|part| !part.iter().any(|&v| is_rim[v]))
             .flatten()
@@ -320,17 +319,12 @@ fn turn(from: &[Vector3], to: &[Vector3]) -> Matrix3<f64> {
     nearest_rotation(&pairs.map(|(a, b)| b * a.transpose()).sum())
 }
 
-/// Which vertices lie on an open boundary.
-fn rim(triangulation: &Triangulation, n: usize) -> VertexData<bool> {
-    let mut is_rim = VertexData::new(n, false);
-    let inner: Vec<_> = triangulation
-        .interior_edges()
-        .iter()
-        .map(|e| e.vertices)
-        .collect();
-    for edge in triangulation.edges() {
-        if inner.binary_search(&edge).is_err() {
-            edge.into_iter().for_each(|v| is_rim[v] = true);
+/// Which vertices lie on an edge that does not have a triangle on either side: an open boundary, or where surfaces branch.
+fn rim(triangulation: &Triangulation) -> VertexData<bool> {
+    let mut is_rim = VertexData::new(triangulation.n_vertices(), false);
+    for (e, edge) in triangulation.edges().iter().enumerate() {
+        if triangulation.edge_triangles(e).len() != 2 {
+            edge.iter().for_each(|&v| is_rim[v] = true);
         }
     }
     is_rim
@@ -345,13 +339,4 @@ fn vertex_areas(triangulation: &Triangulation, x: &Positions) -> VertexData<f64>
         t.iter().for_each(|&v| area[v] += share);
     }
     area
-}
-
-/// Which vertices have a triangle.
-fn faced(triangulation: &Triangulation, n: usize) -> VertexData<bool> {
-    let mut is_faced = VertexData::new(n, false);
-    for &v in triangulation.triangles().iter().flatten() {
-        is_faced[v] = true;
-    }
-    is_faced
 }

@@ -1,9 +1,11 @@
 //! Each analytic gradient equals central differences in f64, on triangles and polygons, closed and open shapes.
 
+use std::sync::Arc;
+
 use mesh_core::sampling::SeededRng;
 use mesh_core::{
-    shapes, Landmark, MeshPoint, Point3, PolygonSoup, Positions, Profile, TriangleSoup,
-    Triangulation, UnitFrame, Vector3, VertexData, VertexId,
+    shapes, Landmark, MeshPoint, Point3, PolygonSoup, Positions, Profile, TargetSurface,
+    TriangleSoup, Triangulation, UnitFrame, Vector3, VertexData, VertexId,
 };
 use mesh_loss::{
     AreaKl, Chamfer, Conformal, CornerAngle, Drift, Flip, FoldBarrier, LandmarkDistance,
@@ -32,7 +34,7 @@ pub(crate) fn all_shapes() -> Vec<PolygonSoup> {
 }
 
 pub(crate) struct Setup {
-    pub(crate) triangulation: Triangulation,
+    pub(crate) triangulation: Arc<Triangulation>,
     pub(crate) rest: Positions,
     pub(crate) moved: Positions,
     pub(crate) rng: SeededRng,
@@ -42,7 +44,7 @@ pub(crate) struct Setup {
 pub(crate) fn setup(shape: usize, seed: u64, amount: f64) -> Setup {
     let soup = all_shapes().swap_remove(shape);
     let (mesh, rest) = soup.into_halfedge().expect("a shape is a mesh");
-    let triangulation = Triangulation::new(&mesh, &rest);
+    let triangulation = Arc::new(Triangulation::new(&mesh, &rest));
     let mut rng = SeededRng::new(seed);
     let moved = rest.map(|p| p + random_vector(&mut rng) * amount);
     Setup {
@@ -94,6 +96,7 @@ fn assert_gradient(
 
 fn matches(s: &mut Setup, normal_bias: Option<f64>) -> Matches {
     let target = TriangleSoup::new(shapes::icosphere(2)).expect("a sphere is a target");
+    let target: Arc<dyn TargetSurface> = Arc::new(target);
     let config = SamplingConfig {
         n_samples: 40,
         face_uniform: 0.5,
@@ -120,7 +123,7 @@ proptest! {
         let terms: [&dyn Loss; 8] = [
             &CornerAngle::new(t, &s.rest),
             &AreaKl::new(t, &s.rest),
-            &TriangleQuality { triangulation: t, threshold: 0.9 },
+            &TriangleQuality::new(t, 0.9),
             &Flip::new(t, &s.rest),
             &FoldBarrier::new(t, &s.rest, 0.95),
             &Conformal::new(t, &s.rest),

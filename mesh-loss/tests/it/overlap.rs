@@ -1,7 +1,11 @@
 //! What counts where one shape lacks a part of the other.
 
+use std::sync::Arc;
+
 use mesh_core::sampling::SeededRng;
-use mesh_core::{shapes, PolygonSoup, Positions, Profile, TriangleSoup, Triangulation, VertexData};
+use mesh_core::{
+    shapes, PolygonSoup, Positions, Profile, TargetSurface, TriangleSoup, Triangulation, VertexData,
+};
 use mesh_loss::{Matches, Overlap, SamplingConfig, SurfaceMatch, SurfaceMatcher};
 
 use crate::finite_differences::UNIT;
@@ -23,8 +27,9 @@ fn pairs_as(
     attraction: impl Fn(f64) -> f64,
 ) -> (Positions, Matches) {
     let (mesh, rest) = flat().into_halfedge().expect("a sound shape");
-    let triangulation = Triangulation::new(&mesh, &rest);
-    let target = TriangleSoup::new(target).expect("a sound shape");
+    let triangulation = Arc::new(Triangulation::new(&mesh, &rest));
+    let target: Arc<dyn TargetSurface> =
+        Arc::new(TriangleSoup::new(target).expect("a sound shape"));
     let config = SamplingConfig {
         n_samples: 500,
         face_uniform: 0.5,

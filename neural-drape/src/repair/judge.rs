@@ -1,9 +1,9 @@
 //! What is broken in a mesh that was not at rest.
 
-use std::borrow::Cow;
+use std::sync::Arc;
 
 use mesh_core::measure::{triangle_normal, triangle_quality};
-use mesh_core::{Positions, Triangulation, TriangulationEdge, Vector3, VertexId};
+use mesh_core::{Positions, Rows, Triangulation, TriangulationEdge, Vector3, VertexId};
 use mesh_loss::FoldBarrier;
 
 use super::Defects;
@@ -16,12 +16,12 @@ const SKINNY_QUALITY: f64 = 0.1;
 /// Tells what is broken that was not at rest, however the polygons are cut.
 pub(super) struct Judge<'a> {
     rest: &'a Positions,
-    pub(super) cuts: Vec<Cut<'a>>,
+    pub(super) cuts: Vec<Cut>,
 }
 
 /// The polygons as triangles, and the edges that are not folded at rest.
-pub(super) struct Cut<'a> {
-    triangulation: Cow<'a, Triangulation>,
+pub(super) struct Cut {
+    triangulation: Arc<Triangulation>,
     edges: Vec<TriangulationEdge>,
 }
 
@@ -36,9 +36,9 @@ pub(super) struct Broken {
 pub(super) struct Reach(Broken);
 
 impl<'a> Judge<'a> {
-    pub(super) fn new(triangulation: &'a Triangulation, rest: &'a Positions) -> Self {
-        let simple = triangulation.simply_cut().map(Cow::Owned);
-        let cuts = std::iter::once(Cow::Borrowed(triangulation)).chain(simple);
+    pub(super) fn new(triangulation: &Arc<Triangulation>, rest: &'a Positions) -> Self {
+        let simple = triangulation.simply_cut().map(Arc::new);
+        let cuts = std::iter::once(Arc::clone(triangulation)).chain(simple);
         Self {
             rest,
             cuts: cuts.map(|triangles| Cut::new(triangles, rest)).collect(),
@@ -96,11 +96,9 @@ impl<'a> Judge<'a> {
     }
 
     /// What keeps edges from folding, in every cut.
-    pub(super) fn barriers(&self, limit: f64) -> Vec<FoldBarrier<'_>> {
-        let triangles = self.cuts.iter().map(|cut| &*cut.triangulation);
-        triangles
-            .map(|t| FoldBarrier::new(t, self.rest, limit))
-            .collect()
+    pub(super) fn barriers(&self, limit: f64) -> Vec<FoldBarrier> {
+        let barrier = |cut: &Cut| FoldBarrier::new(&cut.triangulation, self.rest, limit);
+        self.cuts.iter().map(barrier).collect()
     }
 
     /// Of `rows`, the triangles that are skinny at `x` and were not at rest.
@@ -114,14 +112,13 @@ impl<'a> Judge<'a> {
     }
 }
 
-impl<'a> Cut<'a> {
-    fn new(triangulation: Cow<'a, Triangulation>, rest: &Positions) -> Self {
+impl Cut {
+    fn new(triangulation: Arc<Triangulation>, rest: &Positions) -> Self {
         let normals = normals(&triangulation, rest);
-        let mut edges = triangulation.interior_edges();
-        edges.retain(|e| !is_folded(e, |t| normals[t]));
+        let is_flat = |e: &TriangulationEdge| !is_folded(e, |t| normals[t]);
         Self {
+            edges: triangulation.interior_edges().filter(is_flat).collect(),
             triangulation,
-            edges,
         }
     }
 
@@ -149,43 +146,33 @@ impl<'a> Cut<'a> {
 /// What lies around each vertex, for all cuts.
 pub(super) struct Surroundings<'a> {
     judge: &'a Judge<'a>,
-    cuts: Vec<[Rows; 2]>,
-}
-
-/// Lists of rows, one after the other.
-struct Rows {
-    starts: Vec<u32>,
-    rows: Vec<u32>,
+    /// For each triangle of each cut the rows of its edges.
+    edges_at: Vec<Rows<u32>>,
 }
 
 impl<'a> Surroundings<'a> {
-    pub(super) fn new(judge: &'a Judge<'a>, n_vertices: usize) -> Self {
-        let of_cut = |cut: &Cut<'_>| {
-            let triangles = cut.triangulation.triangles();
-            let corners = (0..).zip(triangles);
-            let corners = corners.flat_map(|(t, corners)| corners.map(|v| (v.index(), t)));
+    pub(super) fn new(judge: &'a Judge<'a>) -> Self {
+        let of_cut = |cut: &Cut| {
             let sides = (0..).zip(&cut.edges);
             let sides = sides.flat_map(|(e, edge)| edge.triangles.map(|t| (t, e)));
-            [
-                Rows::new(n_vertices, corners.collect()),
-                Rows::new(triangles.len(), sides.collect()),
-            ]
+            Rows::from_pairs(cut.triangulation.len(), sides)
         };
         Self {
-            cuts: judge.cuts.iter().map(of_cut).collect(),
+            edges_at: judge.cuts.iter().map(of_cut).collect(),
             judge,
         }
     }
 
     /// What can break or mend when `free` moves.
     pub(super) fn reach(&self, free: &[VertexId]) -> Reach {
-        let of_cut = |[triangles_at, edges_at]: &[Rows; 2]| {
-            let triangles = in_order(free.iter().flat_map(|v| triangles_at.of(v.index())));
-            let edges = in_order(triangles.iter().flat_map(|&t| edges_at.of(t as usize)));
+        let of_cut = |(cut, edges_at): (&Cut, &Rows<u32>)| {
+            let around = |&v: &VertexId| cut.triangulation.vertex_triangles(v);
+            let triangles = in_order(free.iter().flat_map(around));
+            let edges = in_order(triangles.iter().flat_map(|&t| &edges_at[t as usize]));
             (triangles, edges)
         };
         let mut triangles = None;
-        let folds = self.cuts.iter().map(|cut| {
+        let folds = self.judge.cuts.iter().zip(&self.edges_at).map(|cut| {
             let (of_cut, edges) = of_cut(cut);
             triangles.get_or_insert(of_cut);
             edges
@@ -200,7 +187,7 @@ impl<'a> Surroundings<'a> {
     /// The least cosine at an edge of the patch that was not folded at rest.
     pub(super) fn sharpest(&self, x: &Positions, patch: &[VertexId]) -> f64 {
         let reach = self.reach(patch);
-        let of_cut = |(cut, rows): (&Cut<'_>, &Vec<u32>)| {
+        let of_cut = |(cut, rows): (&Cut, &Vec<u32>)| {
             let edges = rows.iter().map(|&row| cut.edge(row));
             let is_in_patch = |v: &VertexId| patch.binary_search(v).is_ok();
             let inside = edges.filter(|e| e.vertices.iter().all(is_in_patch));
@@ -210,30 +197,6 @@ impl<'a> Surroundings<'a> {
         };
         let cuts = self.judge.cuts.iter().zip(&reach.0.folds);
         cuts.map(of_cut).fold(1.0, f64::min)
-    }
-}
-
-impl Rows {
-    /// The second of each pair in the list of the first, in the order of the pairs.
-    fn new(n: usize, pairs: Vec<(usize, u32)>) -> Self {
-        let mut starts = vec![0u32; n + 1];
-        for &(list, _) in &pairs {
-            starts[list + 1] += 1;
-        }
-        for list in 0..n {
-            starts[list + 1] += starts[list];
-        }
-        let mut next = starts.clone();
-        let mut rows = vec![0; pairs.len()];
-        for (list, row) in pairs {
-            rows[next[list] as usize] = row;
-            next[list] += 1;
-        }
-        Self { starts, rows }
-    }
-
-    fn of(&self, list: usize) -> &[u32] {
-        &self.rows[self.starts[list] as usize..self.starts[list + 1] as usize]
     }
 }
 
@@ -281,7 +244,7 @@ mod tests {
     #[test]
     fn polygons_that_simple_programs_cut_otherwise_are_judged_twice() {
         let (mesh, rest) = shapes::open_grid(6, 6).into_halfedge().unwrap();
-        let triangulation = Triangulation::new(&mesh, &rest);
+        let triangulation = Arc::new(Triangulation::new(&mesh, &rest));
         assert!(triangulation.simply_cut().is_none());
         let judge = Judge::new(&triangulation, &rest);
         assert_eq!(judge.cuts.len(), 1);
@@ -292,7 +255,7 @@ mod tests {
         assert!(judge.defects(&judge.broken(&rest)).is_empty());
     }
 
-    fn kites() -> (Triangulation, Positions) {
+    fn kites() -> (Arc<Triangulation>, Positions) {
         let kites = PolygonSoup {
             positions: [[0., 0.], [1., 5.], [0., 0.5], [-1., 5.], [0., 9.]]
                 .map(|[x, y]| Point3::new(x, y, 0.0))
@@ -300,17 +263,17 @@ mod tests {
             faces: vec![vec![0, 1, 2, 3], vec![1, 4, 3, 2]],
         };
         let (mesh, rest) = kites.into_halfedge().unwrap();
-        (Triangulation::new(&mesh, &rest), rest)
+        (Arc::new(Triangulation::new(&mesh, &rest)), rest)
     }
 
     /// Moves a vertex of a broken mesh and then its neighbourhood: judged nearby, judged all over, all the same.
     #[test]
     fn what_is_judged_nearby_is_what_is_judged_all_over() {
         let (mesh, rest) = shapes::quad_sphere(12).into_halfedge().unwrap();
-        let ball = (Triangulation::new(&mesh, &rest), rest);
+        let ball = (Arc::new(Triangulation::new(&mesh, &rest)), rest);
         for (triangulation, rest) in [ball, kites()] {
             let judge = Judge::new(&triangulation, &rest);
-            let surroundings = Surroundings::new(&judge, rest.len());
+            let surroundings = Surroundings::new(&judge);
             let mut x = rest.clone();
             let mut broken = judge.broken(&x);
             let mut n_broken = 0;

@@ -2,6 +2,8 @@
 
 mod judge;
 
+use std::sync::Arc;
+
 use mesh_core::{Point3, Positions, Triangulation, UnitFrame, Vector3, VertexData, VertexId};
 use mesh_loss::{FoldBarrier, LocalShape};
 
@@ -61,7 +63,7 @@ impl Defects {
 ///
 /// The vertices of `held`, such as those of landmarks, stay where they are.
 pub fn repair(
-    triangulation: &Triangulation,
+    triangulation: &Arc<Triangulation>,
     rest: &Positions,
     x: &Positions,
     held: &[VertexId],
@@ -74,15 +76,15 @@ pub fn repair(
     if !vertices.is_empty() {
         let mender = Mender {
             judge: &judge,
-            surroundings: Surroundings::new(&judge, x.len()),
+            surroundings: Surroundings::new(&judge),
             shape: LocalShape::new(triangulation, rest),
             barriers: judge.barriers(UNBENT_COSINE),
-            neighbours: triangulation.neighbours(x.len()),
+            triangulation,
             held,
             size: UnitFrame::principal(x.as_slice()).scale,
         };
         let is_broken = |v: VertexId| vertices.binary_search(&v).is_ok();
-        for patch in triangulation.connected_groups(x.len(), is_broken) {
+        for patch in triangulation.connected_groups(is_broken) {
             if let Some(mended) = mender.mended(&positions, &patch, &broken) {
                 (positions, broken) = mended;
             }
@@ -103,8 +105,8 @@ struct Mender<'a> {
     judge: &'a Judge<'a>,
     surroundings: Surroundings<'a>,
     shape: LocalShape,
-    barriers: Vec<FoldBarrier<'a>>,
-    neighbours: VertexData<Vec<VertexId>>,
+    barriers: Vec<FoldBarrier>,
+    triangulation: &'a Triangulation,
     held: &'a [VertexId],
     size: f64,
 }
@@ -180,7 +182,7 @@ impl Mender<'_> {
     /// Moves each vertex of `free` once, in their order, to the mean of its neighbours.
     fn flatten(&self, x: &mut Positions, free: &[VertexId]) {
         for &v in free {
-            let around = &self.neighbours[v];
+            let around = self.triangulation.vertex_neighbours(v);
             let sum: Vector3 = around.iter().map(|&w| x[w].coords).sum();
             if !around.is_empty() {
                 x[v] = Point3::from(sum / around.len() as f64);
@@ -192,7 +194,9 @@ impl Mender<'_> {
     fn grown(&self, patch: &[VertexId], rings: usize) -> Vec<VertexId> {
         let mut grown = patch.to_vec();
         for _ in 0..rings {
-            let around = grown.iter().flat_map(|&v| &self.neighbours[v]);
+            let around = grown
+                .iter()
+                .flat_map(|&v| self.triangulation.vertex_neighbours(v));
             let around: Vec<VertexId> = around.copied().collect();
             grown.extend(around);
             grown.sort_unstable();
@@ -203,7 +207,11 @@ impl Mender<'_> {
 }
 
 /// What is broken at `x` that was not at rest.
-pub(crate) fn defects(triangulation: &Triangulation, rest: &Positions, x: &Positions) -> Defects {
+pub(crate) fn defects(
+    triangulation: &Arc<Triangulation>,
+    rest: &Positions,
+    x: &Positions,
+) -> Defects {
     let judge = Judge::new(triangulation, rest);
     judge.defects(&judge.broken(x))
 }
@@ -220,9 +228,9 @@ mod tests {
 
     use super::*;
 
-    fn sphere(n: usize) -> (Triangulation, Positions) {
+    fn sphere(n: usize) -> (Arc<Triangulation>, Positions) {
         let (mesh, rest) = shapes::quad_sphere(n).into_halfedge().unwrap();
-        (Triangulation::new(&mesh, &rest), rest)
+        (Arc::new(Triangulation::new(&mesh, &rest)), rest)
     }
 
     #[test]
@@ -258,7 +266,7 @@ mod tests {
     fn neighbours_that_changed_places_are_put_back() {
         let (triangulation, rest) = sphere(48);
         let mut x = rest.clone();
-        for [v, w] in triangulation.edges().into_iter().step_by(4001) {
+        for [v, w] in triangulation.edges().iter().copied().step_by(4001) {
             (x[v], x[w]) = (x[w], x[v]);
         }
         let repair = repair(&triangulation, &rest, &x, &[]);
