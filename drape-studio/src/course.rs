@@ -42,12 +42,12 @@ impl<'a> Start<'a> {
     }
 
     /// The drape at its start.
-    fn drape(&self) -> Result<Drape<'_>> {
+    fn drape(&self) -> Result<Drape> {
         let input = DrapeInput {
             triangulation: &self.scene.source.triangulation,
             rest: &self.scene.source.rest,
             initial: &self.initial,
-            target: self.scene.target.parts.over.as_ref(),
+            target: &self.scene.target.parts.over,
             landmarks: &self.landmarks,
         };
         let mut drape = Drape::new(input, self.settings.config.clone())?;
@@ -58,7 +58,7 @@ impl<'a> Start<'a> {
     }
 
     /// The drape of `log` in a state that it had come to at the end of the log.
-    fn drape_in(&self, state: &DrapeState, log: &RunLog) -> Result<Drape<'_>> {
+    fn drape_in(&self, state: &DrapeState, log: &RunLog) -> Result<Drape> {
         let mut drape = self.drape()?;
         drape.set_landmarks(&landmarks(log.last_landmarks()))?;
         if log.last_parts() != &self.parts {
@@ -76,7 +76,7 @@ impl<'a> Start<'a> {
 /// A drape and its log.
 pub(crate) struct Course<'a> {
     start: &'a Start<'a>,
-    drape: Drape<'a>,
+    drape: Drape,
     log: RunLog,
 }
 

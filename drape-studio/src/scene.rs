@@ -33,9 +33,9 @@ pub struct Source {
     /// Its connectivity.
     pub mesh: HalfedgeMesh,
     /// Its shape.
-    pub rest: Positions,
+    pub rest: Arc<Positions>,
     /// Its polygons as triangles.
-    pub triangulation: Triangulation,
+    pub triangulation: Arc<Triangulation>,
     pub(crate) frame: UnitFrame,
     pub(crate) display: Display,
     pub(crate) symmetry: usize,
@@ -97,8 +97,8 @@ impl Source {
             frame,
             bvh,
             mesh,
-            rest,
-            triangulation,
+            rest: Arc::new(rest),
+            triangulation: Arc::new(triangulation),
             file,
         })
     }
