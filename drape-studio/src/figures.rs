@@ -14,7 +14,7 @@ use mesh_metrics::{
 use serde::Deserialize;
 use serde_json::json;
 
-use crate::hub::{Frame, Hub};
+use crate::broadcast::{Broadcast, ShownShape};
 use crate::latest::Latest;
 use crate::Scene;
 
@@ -34,18 +34,18 @@ pub(crate) struct FiguresJob {
     pub(crate) is_resting: bool,
 }
 
-/// Starts the judge, who tells the hub.
-pub(crate) fn judge(hub: Arc<Hub>) -> Latest<FiguresJob> {
+/// Starts the judge, who tells the broadcast.
+pub(crate) fn judge(broadcast: Arc<Broadcast>) -> Latest<FiguresJob> {
     Latest::start(move |job: FiguresJob| {
         let began = Instant::now();
-        tell(&hub, &job);
+        tell(&broadcast, &job);
         if !job.is_resting {
             thread::sleep((began.elapsed() * REST).min(Duration::from_secs(20)));
         }
     })
 }
 
-fn tell(hub: &Hub, job: &FiguresJob) {
+fn tell(broadcast: &Broadcast, job: &FiguresJob) {
     let (source, target) = (&job.scene.source, job.scene.target.judged());
     let (triangulation, rest, x) = (&source.triangulation, &source.rest, job.positions.as_ref());
     let config = EvaluationConfig {
@@ -75,9 +75,11 @@ fn tell(hub: &Hub, job: &FiguresJob) {
         "landmark_rms": (squares / job.landmarks.len().max(1) as f64).sqrt(),
     });
     if let Some(iteration) = job.iteration {
-        hub.record("Q", iteration, q);
+        broadcast.record("Q", iteration, q);
     }
-    hub.figures.send_replace(Arc::from(message.to_string()));
+    broadcast
+        .figures
+        .send_replace(Arc::from(message.to_string()));
 }
 
 /// What a heat map shows.
@@ -97,10 +99,10 @@ pub(crate) enum Heat {
 impl Heat {
     /// The message that carries the map of a shape: four u32 (2, serial, kind, 1 where there is a value per triangle),
     /// then f32 values.
-    pub(crate) fn message(self, scene: &Scene, frame: &Frame) -> Vec<u8> {
-        let (values, is_per_triangle) = self.values(scene, &frame.positions);
+    pub(crate) fn message(self, scene: &Scene, shown: &ShownShape) -> Vec<u8> {
+        let (values, is_per_triangle) = self.values(scene, &shown.positions);
         let mut bytes = Vec::with_capacity(16 + 4 * values.len());
-        for n in [2, frame.serial, self as u32, u32::from(is_per_triangle)] {
+        for n in [2, shown.serial, self as u32, u32::from(is_per_triangle)] {
             bytes.extend(n.to_le_bytes());
         }
         for value in values {

@@ -5,17 +5,17 @@
 //! | serve the studio | [`Studio::open`], [`Studio::url`], [`Studio::serve`] |
 //! | do a recorded session again | [`replay`] |
 //!
-//! The session is changed in one place, a thread with an inbox (`desk`). Drapes, previews and figures have threads of
-//! their own; pages are shown the newest of each and pass over older ones (`hub`). What is done to a drape is logged
+//! The session is changed in one place, a thread with an inbox (`controller`). Drapes, previews and figures have threads of
+//! their own; pages are shown the newest of each and pass over older ones (`broadcast`). What is done to a drape is logged
 //! with the iteration (`course`), so that [`replay`] comes to the same bits. The program that starts the studio lends
 //! it its [`Toolbox`]: settings, landmark files, the initial deformation and the report are those of the command line.
 
+mod broadcast;
 mod checkpoint;
+mod controller;
 mod course;
-mod desk;
 mod display;
 mod figures;
-mod hub;
 mod landmark_file;
 mod latest;
 mod pick;

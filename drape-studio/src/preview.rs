@@ -1,7 +1,6 @@
 //! The thread that shows what the landmarks as they are would give.
 
 use std::sync::atomic::{AtomicU32, Ordering};
-use std::sync::mpsc::Sender;
 use std::sync::Arc;
 use std::thread;
 use std::time::{Duration, Instant};
@@ -9,10 +8,9 @@ use std::time::{Duration, Instant};
 use mesh_core::{Landmark, Positions};
 use mesh_init::{InitConfig, InteractiveInit};
 
+use crate::broadcast::{Broadcast, ShownKind};
 use crate::course::adjusted;
-use crate::desk::Inbox;
 use crate::figures::FiguresJob;
-use crate::hub::{FrameKind, Hub};
 use crate::latest::Latest;
 use crate::scene::Source;
 use crate::{Scene, Settings, Toolbox};
@@ -26,7 +24,7 @@ const SETTLED: Duration = Duration::from_millis(500);
 
 /// What is to be shown of the landmarks.
 #[derive(Clone)]
-pub(crate) enum Shown {
+pub(crate) enum PreviewOf {
     /// Nothing: they are examined only.
     Nothing,
     /// The source brought to them.
@@ -42,37 +40,37 @@ pub(crate) struct PreviewJob {
     pub(crate) scene: Scene,
     pub(crate) settings: Settings,
     pub(crate) landmarks: Vec<Landmark>,
-    pub(crate) shown: Shown,
+    pub(crate) shown: PreviewOf,
     /// The number of the newest job: an older one is not shown any more.
     pub(crate) newest: Arc<AtomicU32>,
     pub(crate) figures: Arc<Latest<FiguresJob>>,
 }
 
-/// Starts the thread; it tells the desk what is suspicious about the landmarks.
+/// Starts the thread; of each job, `tell` hears its number and what is suspicious about its landmarks, or why nothing
+/// can be shown.
 pub(crate) fn preview(
     toolbox: Arc<dyn Toolbox>,
-    hub: Arc<Hub>,
-    desk: Sender<Inbox>,
+    broadcast: Arc<Broadcast>,
+    tell: impl Fn(u32, Result<Vec<String>, String>) + Send + 'static,
 ) -> Latest<PreviewJob> {
     Latest::start(move |job: PreviewJob| {
         if !job.is_settled() {
             return;
         }
-        let outcome = show(&job, toolbox.as_ref(), &hub)
+        let outcome = show(&job, toolbox.as_ref(), &broadcast)
             .map(|mut notes| {
                 let warnings = toolbox.examine(&job.scene, &job.landmarks);
                 notes.extend(warnings.iter().map(|text| count_from_one(text)));
                 notes
             })
             .map_err(|error| format!("{error:#}"));
-        // The desk is gone only when the server ends.
-        drop(desk.send(Inbox::Previewed(job.number, outcome)));
+        tell(job.number, outcome);
     })
 }
 
 /// Starts the thread that shows the shapes of large sources while landmarks are dragged, by a stand-in, before
 /// [`preview`] has the exact ones.
-pub(crate) fn live_preview(hub: Arc<Hub>) -> Latest<PreviewJob> {
+pub(crate) fn live_preview(broadcast: Arc<Broadcast>) -> Latest<PreviewJob> {
     let mut live: Option<Live> = None;
     Latest::start(move |job: PreviewJob| {
         let Some(config) = job.settings.live.filter(|_| job.is_large()) else {
@@ -84,7 +82,7 @@ pub(crate) fn live_preview(hub: Arc<Hub>) -> Latest<PreviewJob> {
         // Whatever is wrong with the landmarks is told by the exact preview.
         let shown = live.as_mut().and_then(|l| l.show(&job));
         if let Some((kind, x)) = shown.filter(|_| job.is_newest()) {
-            hub.show(&job.scene, kind, Arc::new(x));
+            broadcast.show(&job.scene, kind, Arc::new(x));
         }
     })
 }
@@ -111,17 +109,17 @@ impl Live {
         Arc::ptr_eq(&self.source, &job.scene.source) && self.config == config
     }
 
-    fn show(&mut self, job: &PreviewJob) -> Option<(FrameKind, Positions)> {
+    fn show(&mut self, job: &PreviewJob) -> Option<(ShownKind, Positions)> {
         match &job.shown {
-            Shown::Nothing => None,
-            Shown::Initial => {
+            PreviewOf::Nothing => None,
+            PreviewOf::Initial => {
                 let frame = job.scene.target.judged().principal_frame();
                 let initial = self.init.solve(&job.landmarks, frame).ok()?;
-                Some((FrameKind::Initial, initial.positions))
+                Some((ShownKind::Initial, initial.positions))
             }
-            Shown::Adjusted(present) => {
+            PreviewOf::Adjusted(present) => {
                 let x = self.init.adjust(&job.landmarks, present).ok()?;
-                Some((FrameKind::Adjusted, x))
+                Some((ShownKind::Adjusted, x))
             }
         }
     }
@@ -147,25 +145,29 @@ impl PreviewJob {
 }
 
 /// Shows the shape; what had to be assumed for it.
-fn show(job: &PreviewJob, toolbox: &dyn Toolbox, hub: &Hub) -> anyhow::Result<Vec<String>> {
+fn show(
+    job: &PreviewJob,
+    toolbox: &dyn Toolbox,
+    broadcast: &Broadcast,
+) -> anyhow::Result<Vec<String>> {
     let mut assumed = Vec::new();
     let (kind, x) = match &job.shown {
-        Shown::Nothing => return Ok(assumed),
-        Shown::Adjusted(present) => (
-            FrameKind::Adjusted,
+        PreviewOf::Nothing => return Ok(assumed),
+        PreviewOf::Adjusted(present) => (
+            ShownKind::Adjusted,
             adjusted(&job.scene, &job.landmarks, present)?,
         ),
-        Shown::Initial => {
+        PreviewOf::Initial => {
             let deformed = toolbox.deform(&job.scene, &job.landmarks, &job.settings)?;
             assumed = deformed.assumed;
-            (FrameKind::Initial, deformed.positions)
+            (ShownKind::Initial, deformed.positions)
         }
     };
     if !job.is_newest() {
         return Ok(assumed);
     }
     let x = Arc::new(x);
-    hub.show(&job.scene, kind, Arc::clone(&x));
+    broadcast.show(&job.scene, kind, Arc::clone(&x));
     job.figures.ask(FiguresJob {
         scene: job.scene.clone(),
         positions: x,

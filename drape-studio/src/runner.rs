@@ -10,10 +10,10 @@ use anyhow::{ensure, Result};
 use neural_drape::{DrapeState, StepReport};
 use serde_json::json;
 
-use crate::checkpoint::{self, Checkpoint, Story};
+use crate::broadcast::{Broadcast, Provenance};
+use crate::checkpoint::{self, Checkpoint, History};
 use crate::course::{more_iterations, Course, Start};
 use crate::figures::FiguresJob;
-use crate::hub::{Hub, Made};
 use crate::latest::Latest;
 use crate::session::{landmarks, Mark, RunLog};
 use crate::{Parts, Scene, Toolbox};
@@ -37,8 +37,8 @@ pub(crate) enum Order {
 }
 
 /// What the thread tells.
-pub(crate) enum News {
-    /// It stands still, ready to go.
+pub(crate) enum Update {
+    /// It stands still, ready to go on.
     Paused(RunLog),
     /// It goes.
     Running,
@@ -54,7 +54,7 @@ pub(crate) enum News {
 pub(crate) struct RunnerParts {
     pub(crate) scene: Scene,
     pub(crate) toolbox: Arc<dyn Toolbox>,
-    pub(crate) hub: Arc<Hub>,
+    pub(crate) broadcast: Arc<Broadcast>,
     pub(crate) figures: Arc<Latest<FiguresJob>>,
     /// Where it is kept.
     pub(crate) checkpoint: PathBuf,
@@ -81,13 +81,13 @@ fn lock(is_wanted: &Mutex<bool>) -> MutexGuard<'_, bool> {
 
 impl Runner {
     /// Starts the thread, which begins with a pause; `tell` is called from it.
-    pub(crate) fn start(parts: RunnerParts, tell: impl Fn(News) + Send + 'static) -> Self {
+    pub(crate) fn start(parts: RunnerParts, tell: impl Fn(Update) + Send + 'static) -> Self {
         let (sender, orders) = channel();
         let is_wanted = Arc::new(Mutex::new(true));
         let wanted = Arc::clone(&is_wanted);
         thread::spawn(move || {
             if let Err(error) = run(&parts, &wanted, &orders, &tell) {
-                tell(News::Failed(format!("{error:#}")));
+                tell(Update::Failed(format!("{error:#}")));
             }
         });
         Self {
@@ -106,14 +106,14 @@ fn run(
     parts: &RunnerParts,
     is_wanted: &Mutex<bool>,
     orders: &Receiver<Order>,
-    tell: &dyn Fn(News),
+    tell: &dyn Fn(Update),
 ) -> Result<()> {
     let start = Start::new(&parts.scene, parts.toolbox.as_ref(), &parts.log)?;
     let course = match &parts.state {
         Some(state) => Course::restored(&start, parts.log.clone(), state)?,
         None => Course::replayed(&start, &parts.log, |step| {
             ensure!(*lock(is_wanted), "the drape was given up");
-            parts.hub.record_step(step);
+            parts.broadcast.record_step(step);
             Ok(())
         })?,
     };
@@ -131,7 +131,16 @@ fn run(
     run.tell_progress(None);
     run.show();
     run.save()?;
-    tell(News::Paused(run.course.log().clone()));
+    let log = run.course.log().clone();
+    let is_over = run.is_over();
+    if is_over {
+        run.judge(true);
+    }
+    tell(if is_over {
+        Update::Finished(log)
+    } else {
+        Update::Paused(log)
+    });
     run.obey(orders)
 }
 
@@ -140,7 +149,7 @@ struct Run<'a> {
     is_wanted: &'a Mutex<bool>,
     course: Course<'a>,
     n_more: usize,
-    tell: &'a dyn Fn(News),
+    tell: &'a dyn Fn(Update),
     shown: Instant,
     saved: Instant,
     judged: Instant,
@@ -166,22 +175,26 @@ impl Run<'_> {
                 Some(Order::Go) => {
                     is_running = true;
                     self.pace = Pace::default();
-                    (self.tell)(News::Running);
+                    (self.tell)(Update::Running);
                 }
                 Some(Order::Pause) if is_running => {
                     is_running = false;
-                    self.rest(News::Paused(self.course.log().clone()))?;
+                    self.rest(Update::Paused(self.course.log().clone()))?;
                 }
                 Some(Order::Pause) => {}
                 Some(Order::Step) => {
                     is_running = false;
                     if self.advance()? {
-                        self.rest(News::Paused(self.course.log().clone()))?;
+                        self.rest(Update::Paused(self.course.log().clone()))?;
                     }
                 }
                 Some(order) => self.change(order)?,
             }
         }
+    }
+
+    fn is_over(&self) -> bool {
+        self.course.log().iteration >= self.course.n_iterations()
     }
 
     /// One iteration; false when it was the last.
@@ -190,9 +203,9 @@ impl Run<'_> {
         let step = self.course.step()?;
         if let Some(step) = &step {
             self.pace.add(began.elapsed());
-            self.parts.hub.record_step(step);
+            self.parts.broadcast.record_step(step);
         }
-        let is_over = self.course.log().iteration >= self.course.n_iterations();
+        let is_over = self.is_over();
         if self.shown.elapsed() >= FRAME_INTERVAL || is_over {
             self.show();
             self.tell_progress(step.as_ref());
@@ -204,7 +217,7 @@ impl Run<'_> {
             self.save()?;
         }
         if is_over {
-            self.rest(News::Finished(self.course.log().clone()))?;
+            self.rest(Update::Finished(self.course.log().clone()))?;
         }
         Ok(!is_over)
     }
@@ -224,12 +237,12 @@ impl Run<'_> {
         self.save()?;
         self.show();
         self.tell_progress(None);
-        (self.tell)(News::Changed(self.course.log().clone()));
+        (self.tell)(Update::Changed(self.course.log().clone()));
         Ok(())
     }
 
     /// Stands still: everything is shown, judged and saved.
-    fn rest(&mut self, news: News) -> Result<()> {
+    fn rest(&mut self, news: Update) -> Result<()> {
         self.show();
         self.judge(true);
         self.save()?;
@@ -240,13 +253,13 @@ impl Run<'_> {
     fn show(&mut self) {
         let Self { parts, course, .. } = self;
         let x = Arc::new(course.positions());
-        let made = Made {
+        let provenance = Provenance {
             log: course.log().clone(),
             network: course.network(),
         };
         let is_wanted = lock(self.is_wanted);
         if *is_wanted {
-            parts.hub.show_drape(&parts.scene, x, made);
+            parts.broadcast.show_drape(&parts.scene, x, provenance);
         }
         self.shown = Instant::now();
     }
@@ -266,9 +279,9 @@ impl Run<'_> {
     fn save(&mut self) -> Result<()> {
         let checkpoint = Checkpoint {
             state: self.course.state(),
-            story: Story {
+            history: History {
                 log: self.course.log().clone(),
-                curves: self.parts.hub.curves(),
+                curves: self.parts.broadcast.curves(),
             },
         };
         let is_wanted = lock(self.is_wanted);
@@ -295,7 +308,7 @@ impl Run<'_> {
         let text = Arc::from(message.to_string());
         let is_wanted = lock(self.is_wanted);
         if *is_wanted {
-            self.parts.hub.progress.send_replace(text);
+            self.parts.broadcast.progress.send_replace(text);
         }
     }
 }

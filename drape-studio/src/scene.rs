@@ -49,14 +49,14 @@ pub struct Target {
     pub path: PathBuf,
     /// What is draped over, and what results are judged by.
     pub parts: TargetParts,
-    pub(crate) shown: Shown,
+    pub(crate) shown: PickSurface,
     pub(crate) frame: UnitFrame,
     pub(crate) display: Display,
     pub(crate) symmetry: usize,
 }
 
 /// What is seen and picked: all that is in the file.
-pub(crate) enum Shown {
+pub(crate) enum PickSurface {
     Triangles(TriangleBvh),
     Points(Vec<Point3>),
 }
@@ -234,13 +234,13 @@ impl Target {
 
     /// Whether it is a cloud of points.
     pub fn is_cloud(&self) -> bool {
-        matches!(self.shown, Shown::Points(_))
+        matches!(self.shown, PickSurface::Points(_))
     }
 
     /// The first place that a ray in the frame of the display meets.
     pub(crate) fn pick(&self, ray: &Ray) -> Option<Point3> {
         match &self.shown {
-            Shown::Triangles(bvh) => {
+            PickSurface::Triangles(bvh) => {
                 let location = pick::first_hit(bvh, &self.frame, ray)?;
                 let Location::Triangle { index, barycentric } = location else {
                     return None;
@@ -249,22 +249,26 @@ impl Target {
                 let sum: Vector3 = (0..3).map(|k| corners[k].coords * barycentric[k]).sum();
                 Some(Point3::from(sum))
             }
-            Shown::Points(points) => pick::front_point(points, &self.frame, ray),
+            PickSurface::Points(points) => pick::front_point(points, &self.frame, ray),
         }
     }
 }
 
-fn cloud(points: Vec<Point3>, judged: &dyn TargetSurface, frame: &UnitFrame) -> (Shown, Display) {
+fn cloud(
+    points: Vec<Point3>,
+    judged: &dyn TargetSurface,
+    frame: &UnitFrame,
+) -> (PickSurface, Display) {
     let closest = judged.closest_points(&points);
     let normals: Vec<Vector3> = closest
         .iter()
         .map(|c| judged.normal(&c.location).unwrap_or_default())
         .collect();
     let display = Display::cloud(frame, &points, &normals);
-    (Shown::Points(points), display)
+    (PickSurface::Points(points), display)
 }
 
-fn triangles(soup: PolygonSoup, frame: &UnitFrame) -> anyhow::Result<(Shown, Display)> {
+fn triangles(soup: PolygonSoup, frame: &UnitFrame) -> anyhow::Result<(PickSurface, Display)> {
     let triangles: Vec<[u32; 3]> = if soup.faces.iter().all(|f| f.len() == 3) {
         soup.faces.iter().map(|f| [f[0], f[1], f[2]]).collect()
     } else {
@@ -280,7 +284,7 @@ fn triangles(soup: PolygonSoup, frame: &UnitFrame) -> anyhow::Result<(Shown, Dis
         .map(|t| t.map(|v| soup.positions[v as usize]));
     let bvh = TriangleBvh::new(corners.collect());
     Ok((
-        Shown::Triangles(bvh),
+        PickSurface::Triangles(bvh),
         Display::mesh(frame, &soup, triangles),
     ))
 }

@@ -7,8 +7,8 @@ use std::sync::Arc;
 
 use anyhow::{anyhow, ensure, Context as _, Result};
 
-use crate::desk::{Desk, DeskParts};
-use crate::hub::Hub;
+use crate::broadcast::Broadcast;
+use crate::controller::{Controller, ControllerParts};
 use crate::server::{serve, App, Guard};
 use crate::session::{self, InputRecord, Mark, Session};
 use crate::{Scene, Source, Target, Toolbox};
@@ -72,10 +72,10 @@ impl Studio {
             .with_context(|| format!("port {} cannot be opened", options.port))?;
         let guard = Guard::new(listener.local_addr()?)?;
         let url = format!("http://{}/{}/", listener.local_addr()?, guard.token());
-        let hub = Arc::new(Hub::new());
-        let desk = Desk::start(DeskParts {
+        let broadcast = Arc::new(Broadcast::new());
+        let controller = Controller::start(ControllerParts {
             toolbox: Arc::clone(&toolbox),
-            hub: Arc::clone(&hub),
+            broadcast: Arc::clone(&broadcast),
             session,
             source: inputs.source,
             target: inputs.target,
@@ -84,7 +84,7 @@ impl Studio {
         })?;
         let uploads = options.session.with_extension("files");
         Ok(Self {
-            app: App::new(desk, hub, toolbox, uploads),
+            app: App::new(controller, broadcast, toolbox, uploads),
             listener,
             guard,
             url,

@@ -10,9 +10,9 @@ use tokio::sync::oneshot;
 use tokio::task::spawn_blocking;
 
 use super::App;
+use crate::broadcast::ShownShape;
+use crate::controller::{Inbox, Snapshot, OPEN_FIRST};
 use crate::course::Start;
-use crate::desk::{Inbox, Snapshot};
-use crate::hub::Frame;
 use crate::replay::Replayed;
 use crate::session::{landmarks, RunLog};
 use crate::toolbox::Finished;
@@ -28,7 +28,7 @@ struct Download {
 /// The result, the warp, the landmarks, the report or the session.
 pub(super) async fn export(State(app): State<Arc<App>>, Path(what): Path<String>) -> Response {
     let (sender, answer) = oneshot::channel();
-    app.desk.send(Inbox::Snapshot(sender));
+    app.controller.send(Inbox::Snapshot(sender));
     let Ok(snapshot) = answer.await else {
         return StatusCode::SERVICE_UNAVAILABLE.into_response();
     };
@@ -107,15 +107,12 @@ fn make(app: &App, what: &str, snapshot: Snapshot) -> Result<Download> {
 struct Work {
     scene: Scene,
     session: crate::session::Session,
-    shown: Option<Arc<Frame>>,
+    shown: Option<Arc<ShownShape>>,
 }
 
 impl Work {
     fn of(snapshot: Snapshot) -> Result<Self> {
-        let (source, target) = snapshot
-            .source
-            .zip(snapshot.target)
-            .context("open a source and a target first")?;
+        let (source, target) = snapshot.source.zip(snapshot.target).context(OPEN_FIRST)?;
         Ok(Self {
             scene: Scene { source, target },
             session: snapshot.session,
@@ -123,7 +120,7 @@ impl Work {
         })
     }
 
-    fn shown(&self) -> Result<&Frame> {
+    fn shown(&self) -> Result<&ShownShape> {
         self.shown
             .as_deref()
             .context("there is no result yet; drape first")
@@ -138,7 +135,10 @@ impl Work {
             settings: start.settings,
             initial: start.initial,
             draped: shown.positions.as_ref().clone(),
-            network: shown.made.as_ref().and_then(|made| made.network.clone()),
+            network: shown
+                .provenance
+                .as_ref()
+                .and_then(|provenance| provenance.network.clone()),
             scene: self.scene.clone(),
         })
     }

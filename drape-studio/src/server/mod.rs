@@ -17,8 +17,8 @@ use axum::routing::{get, post};
 use axum::Router;
 use tokio::net::TcpListener;
 
-use crate::desk::DeskHandle;
-use crate::hub::Hub;
+use crate::broadcast::Broadcast;
+use crate::controller::ControllerHandle;
 use crate::Toolbox;
 pub(crate) use guard::Guard;
 
@@ -29,8 +29,8 @@ const MAX_SOCKETS: usize = 32;
 
 /// What every handler needs.
 pub(crate) struct App {
-    pub(crate) desk: DeskHandle,
-    pub(crate) hub: Arc<Hub>,
+    pub(crate) controller: ControllerHandle,
+    pub(crate) broadcast: Arc<Broadcast>,
     pub(crate) toolbox: Arc<dyn Toolbox>,
     /// Folder of the files that pages send.
     pub(crate) uploads: PathBuf,
@@ -39,14 +39,14 @@ pub(crate) struct App {
 
 impl App {
     pub(crate) fn new(
-        desk: DeskHandle,
-        hub: Arc<Hub>,
+        controller: ControllerHandle,
+        broadcast: Arc<Broadcast>,
         toolbox: Arc<dyn Toolbox>,
         uploads: PathBuf,
     ) -> Self {
         Self {
-            desk,
-            hub,
+            controller,
+            broadcast,
             toolbox,
             uploads,
             sockets: tokio::sync::Semaphore::new(MAX_SOCKETS),
@@ -78,7 +78,8 @@ pub(crate) async fn serve(listener: TcpListener, guard: Guard, app: App) -> std:
 /// The buffers of a shape.
 async fn mesh(State(app): State<Arc<App>>, Path(side): Path<String>) -> Response {
     let (sender, answer) = tokio::sync::oneshot::channel();
-    app.desk.send(crate::desk::Inbox::Snapshot(sender));
+    app.controller
+        .send(crate::controller::Inbox::Snapshot(sender));
     let Ok(snapshot) = answer.await else {
         return StatusCode::SERVICE_UNAVAILABLE.into_response();
     };

@@ -14,7 +14,7 @@ use tokio::sync::oneshot;
 use tokio::task::spawn_blocking;
 
 use super::App;
-use crate::desk::{Inbox, Opened};
+use crate::controller::{Inbox, Opened, OPEN_FIRST};
 use crate::session::InputRecord;
 use crate::{Scene, Source, Target};
 
@@ -32,7 +32,7 @@ pub(super) async fn open(
     let outcome = match read {
         Ok(Ok(opened)) => {
             let (sender, answer) = oneshot::channel();
-            app.desk.send(Inbox::Opened(opened, sender));
+            app.controller.send(Inbox::Opened(opened, sender));
             answer.await.unwrap_or(Ok(()))
         }
         Ok(Err(error)) => Err(format!("{error:#}")),
@@ -65,10 +65,7 @@ fn read(app: &App, role: &str, name: &str, bytes: &[u8]) -> Result<Opened> {
             Ok(Opened::Target(Arc::new(target), InputRecord::of(&path)?))
         }
         "landmarks" => {
-            let scene = app
-                .hub
-                .scene()
-                .context("open a source and a target first")?;
+            let scene = app.broadcast.scene().context(OPEN_FIRST)?;
             Ok(Opened::Landmarks(
                 landmarks(app, &scene, &path).map_err(show)?,
             ))

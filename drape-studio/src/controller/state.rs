@@ -2,13 +2,13 @@
 
 use serde_json::{json, Value};
 
-use super::{Desk, Status};
+use super::Controller;
 use crate::session::{Mark, MarkKind};
 
-impl Desk {
+impl Controller {
     /// Inputs, landmarks, settings, the drape: everything but shapes and figures.
     pub(super) fn state(&self) -> Value {
-        let document = &self.session.document;
+        let (document, situation) = (&self.session.document, self.situation());
         let marks: Vec<Value> = document.marks.iter().map(|m| self.mark(m)).collect();
         json!({
             "type": "state",
@@ -30,8 +30,8 @@ impl Desk {
                 "toml": self.settings.toml,
             },
             "presets": self.toolbox.presets(),
-            "can_undo": self.session.can_undo(),
-            "can_redo": self.session.can_redo(),
+            "can": situation.can(),
+            "discards": situation.discarding(),
             "run": self.run_state(),
         })
     }
@@ -87,17 +87,9 @@ impl Desk {
         let Some(run) = &self.run else {
             return json!({ "status": "none" });
         };
-        let (status, error) = match &run.status {
-            Status::Starting => ("starting", None),
-            Status::Running => ("running", None),
-            Status::Paused => ("paused", None),
-            Status::Stopped => ("stopped", None),
-            Status::Finished => ("finished", None),
-            Status::Failed(error) => ("failed", Some(error)),
-        };
         json!({
-            "status": status,
-            "error": error,
+            "status": run.status,
+            "error": run.error,
             "iteration": run.log.iteration,
             "pending": self.are_marks_pending() || self.are_parts_pending(),
             "pending_landmarks": self.are_marks_pending(),

@@ -6,13 +6,14 @@ use std::thread;
 use anyhow::{ensure, Context as _, Result};
 use serde_json::{json, Value};
 
-use super::{Desk, Inbox};
+use super::can::OPEN_FIRST;
+use super::{Controller, Inbox};
 use crate::{InnerPart, Source, Treatment};
 
-impl Desk {
+impl Controller {
     /// Treats a part in its own way, if that leaves something to drape.
     pub(super) fn treat(&mut self, name: &str, treatment: Treatment) -> Result<()> {
-        let scene = self.scene().context("open a source and a target first")?;
+        let scene = self.scene().context(OPEN_FIRST)?;
         let named = scene.source.parts();
         let inner = self.inner.iter().find(|part| part.name == name);
         ensure!(
@@ -40,7 +41,7 @@ impl Desk {
     }
 
     /// The triangles of a part, as ranges of rows.
-    pub(super) fn part_faces(&self, name: &str) -> Value {
+    pub(super) fn part_triangles(&self, name: &str) -> Value {
         let inner = self.inner.iter().find(|part| part.name == name);
         let ranges = self.source.as_ref().map(|source| match inner {
             Some(part) => source.triangles_within(&part.vertices),
@@ -49,7 +50,7 @@ impl Desk {
         json!(ranges)
     }
 
-    /// Looks for inner parts; the desk hears of them.
+    /// Looks for inner parts; the controller hears of them.
     pub(super) fn look_inside(&self) {
         let Some(scene) = self.scene() else {
             return;
