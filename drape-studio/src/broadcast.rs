@@ -9,9 +9,9 @@ use neural_drape::StepReport;
 use serde::{Deserialize, Serialize};
 use tokio::sync::watch;
 
-use crate::display::position_bytes;
+use crate::buffers::position_bytes;
+use crate::displayed::DisplayedPair;
 use crate::session::RunLog;
-use crate::Scene;
 
 /// Points that a curve is sent with at most.
 const MAX_CURVE: usize = 600;
@@ -62,7 +62,7 @@ pub(crate) struct Broadcast {
 
 #[derive(Default)]
 struct Shared {
-    scene: Option<Scene>,
+    displayed: Option<DisplayedPair>,
     serial: u32,
     draped: Option<Arc<ShownShape>>,
     curves: Vec<Curve>,
@@ -91,10 +91,10 @@ impl Broadcast {
         self.shared.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// What is shown belongs to this scene from now on.
-    pub(crate) fn set_scene(&self, scene: Option<Scene>) {
+    /// What is shown belongs to this pair from now on.
+    pub(crate) fn set_displayed(&self, displayed: Option<DisplayedPair>) {
         let mut shared = self.shared();
-        shared.scene = scene;
+        shared.displayed = displayed;
         shared.curves.clear();
         shared.draped = None;
         drop(shared);
@@ -103,23 +103,23 @@ impl Broadcast {
         self.progress.send_replace(Arc::from(""));
     }
 
-    pub(crate) fn scene(&self) -> Option<Scene> {
-        self.shared().scene.clone()
+    pub(crate) fn displayed(&self) -> Option<DisplayedPair> {
+        self.shared().displayed.clone()
     }
 
     /// Shows what landmarks would give. Where there is a drape, an initial shape comes too late and is not shown.
-    pub(crate) fn show(&self, scene: &Scene, kind: ShownKind, x: Arc<Positions>) {
-        self.put(scene, kind, x, None);
+    pub(crate) fn show(&self, displayed: &DisplayedPair, kind: ShownKind, x: Arc<Positions>) {
+        self.put(displayed, kind, x, None);
     }
 
     /// Shows a drape as far as it is.
-    pub(crate) fn show_drape(&self, scene: &Scene, x: Arc<Positions>, provenance: Provenance) {
-        self.put(scene, ShownKind::Draped, x, Some(provenance));
+    pub(crate) fn show_drape(&self, displayed: &DisplayedPair, x: Arc<Positions>, provenance: Provenance) {
+        self.put(displayed, ShownKind::Draped, x, Some(provenance));
     }
 
     fn put(
         &self,
-        scene: &Scene,
+        displayed: &DisplayedPair,
         kind: ShownKind,
         x: Arc<Positions>,
         provenance: Option<Provenance>,
@@ -135,7 +135,7 @@ impl Broadcast {
         for n in [1, serial, kind as u32, iteration as u32] {
             message.extend(n.to_le_bytes());
         }
-        message.extend(position_bytes(&scene.target.frame, &x));
+        message.extend(position_bytes(&displayed.target.frame, &x));
         let shown = Arc::new(ShownShape {
             serial,
             kind,

@@ -79,7 +79,7 @@ mod tests {
         let path = path_beside(&folder.path().join("a.drape.json"));
         let log = RunLog {
             settings: "seed = 1\n".to_owned(),
-            parts: crate::Parts::default(),
+            parts: mesh_draping::Parts::default(),
             landmarks: Vec::new(),
             events: Vec::new(),
             iteration: 7,

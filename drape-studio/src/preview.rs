@@ -6,14 +6,13 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use mesh_core::{Landmark, Positions};
+use mesh_draping::{adjusted, initial_deformation, Error, InitialMethod, Note, Source};
 use mesh_init::{InitConfig, InteractiveInit};
 
 use crate::broadcast::{Broadcast, ShownKind};
-use crate::course::adjusted;
+use crate::displayed::DisplayedPair;
 use crate::figures::FiguresJob;
 use crate::latest::Latest;
-use crate::scene::Source;
-use crate::{Scene, Settings, Toolbox};
 
 /// Sources with more vertices than this are shown by a stand-in at once, then exactly.
 const LARGE: usize = 4000;
@@ -37,9 +36,11 @@ pub(crate) enum PreviewOf {
 #[derive(Clone)]
 pub(crate) struct PreviewJob {
     pub(crate) number: u32,
-    pub(crate) scene: Scene,
-    pub(crate) settings: Settings,
+    pub(crate) displayed: DisplayedPair,
+    pub(crate) method: InitialMethod,
     pub(crate) landmarks: Vec<Landmark>,
+    /// The number of each landmark's marker.
+    pub(crate) numbers: Vec<usize>,
     pub(crate) shown: PreviewOf,
     /// The number of the newest job: an older one is not shown any more.
     pub(crate) newest: Arc<AtomicU32>,
@@ -49,7 +50,6 @@ pub(crate) struct PreviewJob {
 /// Starts the thread; of each job, `tell` hears its number and what is suspicious about its landmarks, or why nothing
 /// can be shown.
 pub(crate) fn preview(
-    toolbox: Arc<dyn Toolbox>,
     broadcast: Arc<Broadcast>,
     tell: impl Fn(u32, Result<Vec<String>, String>) + Send + 'static,
 ) -> Latest<PreviewJob> {
@@ -57,14 +57,11 @@ pub(crate) fn preview(
         if !job.is_settled() {
             return;
         }
-        let outcome = show(&job, toolbox.as_ref(), &broadcast)
-            .map(|mut notes| {
-                let warnings = toolbox.examine(&job.scene, &job.landmarks);
-                notes.extend(warnings.iter().map(|text| count_from_one(text)));
-                notes
-            })
-            .map_err(|error| format!("{error:#}"));
-        tell(job.number, outcome);
+        let outcome = show(&job, &broadcast).map(|notes| {
+            let notes = notes.iter().map(ToString::to_string);
+            notes.chain(warnings(&job)).collect()
+        });
+        tell(job.number, outcome.map_err(|error| error.to_string()));
     })
 }
 
@@ -73,7 +70,7 @@ pub(crate) fn preview(
 pub(crate) fn live_preview(broadcast: Arc<Broadcast>) -> Latest<PreviewJob> {
     let mut live: Option<Live> = None;
     Latest::start(move |job: PreviewJob| {
-        let Some(config) = job.settings.live.filter(|_| job.is_large()) else {
+        let Some(config) = job.method.config().filter(|_| job.is_large()) else {
             return;
         };
         if !live.as_ref().is_some_and(|l| l.is_for(&job, config)) {
@@ -82,22 +79,22 @@ pub(crate) fn live_preview(broadcast: Arc<Broadcast>) -> Latest<PreviewJob> {
         // Whatever is wrong with the landmarks is told by the exact preview.
         let shown = live.as_mut().and_then(|l| l.show(&job));
         if let Some((kind, x)) = shown.filter(|_| job.is_newest()) {
-            broadcast.show(&job.scene, kind, Arc::new(x));
+            broadcast.show(&job.displayed, kind, Arc::new(x));
         }
     })
 }
 
 /// A source that is ready to be deformed at once.
 struct Live {
-    source: Arc<Source>,
+    source: Source,
     config: InitConfig,
     init: InteractiveInit,
 }
 
 impl Live {
     fn of(job: &PreviewJob, config: InitConfig) -> Option<Self> {
-        let source = Arc::clone(&job.scene.source);
-        let init = InteractiveInit::new(&source.triangulation, &source.rest, STAND_IN, config);
+        let source = job.displayed.shapes.source.clone();
+        let init = InteractiveInit::new(source.triangulation(), source.rest(), STAND_IN, config);
         Some(Self {
             init: init.ok()?,
             source,
@@ -106,14 +103,14 @@ impl Live {
     }
 
     fn is_for(&self, job: &PreviewJob, config: InitConfig) -> bool {
-        Arc::ptr_eq(&self.source, &job.scene.source) && self.config == config
+        self.source.is_same(&job.displayed.shapes.source) && self.config == config
     }
 
     fn show(&mut self, job: &PreviewJob) -> Option<(ShownKind, Positions)> {
         match &job.shown {
             PreviewOf::Nothing => None,
             PreviewOf::Initial => {
-                let frame = job.scene.target.judged().principal_frame();
+                let frame = job.displayed.target.judged().principal_frame();
                 let initial = self.init.solve(&job.landmarks, frame).ok()?;
                 Some((ShownKind::Initial, initial.positions))
             }
@@ -131,7 +128,7 @@ impl PreviewJob {
     }
 
     fn is_large(&self) -> bool {
-        self.scene.source.rest.len() > LARGE
+        self.displayed.shapes.source.rest().len() > LARGE
     }
 
     /// Whether no other edit follows soon: what takes long is then begun.
@@ -145,74 +142,43 @@ impl PreviewJob {
 }
 
 /// Shows the shape; what had to be assumed for it.
-fn show(
-    job: &PreviewJob,
-    toolbox: &dyn Toolbox,
-    broadcast: &Broadcast,
-) -> anyhow::Result<Vec<String>> {
-    let mut assumed = Vec::new();
+fn show(job: &PreviewJob, broadcast: &Broadcast) -> Result<Vec<Note>, Error> {
+    let pair = job.displayed.shapes.pair(job.landmarks.clone());
+    let mut notes = Vec::new();
     let (kind, x) = match &job.shown {
-        PreviewOf::Nothing => return Ok(assumed),
-        PreviewOf::Adjusted(present) => (
-            ShownKind::Adjusted,
-            adjusted(&job.scene, &job.landmarks, present)?,
-        ),
+        PreviewOf::Nothing => return Ok(notes),
+        PreviewOf::Adjusted(present) => (ShownKind::Adjusted, adjusted(&pair, present)?),
         PreviewOf::Initial => {
-            let deformed = toolbox.deform(&job.scene, &job.landmarks, &job.settings)?;
-            assumed = deformed.assumed;
-            (ShownKind::Initial, deformed.positions)
+            let initial = initial_deformation(&pair, job.method)?;
+            notes = initial.notes;
+            (ShownKind::Initial, initial.positions)
         }
     };
     if !job.is_newest() {
-        return Ok(assumed);
+        return Ok(notes);
     }
     let x = Arc::new(x);
-    broadcast.show(&job.scene, kind, Arc::clone(&x));
+    broadcast.show(&job.displayed, kind, Arc::clone(&x));
     job.figures.ask(FiguresJob {
-        scene: job.scene.clone(),
+        displayed: job.displayed.clone(),
         positions: x,
         landmarks: job.landmarks.clone(),
         iteration: None,
         is_resting: true,
     });
-    Ok(assumed)
+    Ok(notes)
 }
 
-/// The command line counts landmarks from 0, as its files do; the page numbers its markers from 1.
-fn count_from_one(text: &str) -> String {
-    let mut parts = text.split("landmark ");
-    let mut counted = parts.next().unwrap_or_default().to_owned();
-    for part in parts {
-        let n_digits = part.bytes().take_while(u8::is_ascii_digit).count();
-        let (digits, rest) = part.split_at(n_digits);
-        counted += "landmark ";
-        match digits.parse::<usize>() {
-            Ok(n) => counted += &(n + 1).to_string(),
-            Err(_) => counted += digits,
+/// What is suspicious about the landmarks and about the target, in the page's words: it numbers landmarks as its
+/// markers.
+fn warnings(job: &PreviewJob) -> Vec<String> {
+    let pair = job.displayed.shapes.pair(job.landmarks.clone());
+    let findings = pair.findings().into_iter().map(|mut finding| {
+        for label in finding.labels_mut() {
+            label.index = job.numbers.get(label.index).copied().unwrap_or(label.index);
         }
-        counted += rest;
-    }
-    counted
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn numbers_of_landmarks_are_those_of_the_markers() {
-        for (from_zero, from_one) in [
-            (
-                "landmark 0 (nose) and landmark 9 are the same",
-                "landmark 1 (nose) and landmark 10 are the same",
-            ),
-            (
-                "1 landmark: few; 3 landmarks",
-                "1 landmark: few; 3 landmarks",
-            ),
-            ("the landmarks fit", "the landmarks fit"),
-        ] {
-            assert_eq!(count_from_one(from_zero), from_one);
-        }
-    }
+        finding.to_string()
+    });
+    let left_out = pair.target.notes().iter().map(ToString::to_string);
+    findings.chain(left_out).collect()
 }

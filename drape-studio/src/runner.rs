@@ -7,16 +7,17 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use anyhow::{ensure, Result};
+use mesh_draping::{Draping, Parts};
 use neural_drape::{DrapeState, StepReport};
 use serde_json::json;
 
 use crate::broadcast::{Broadcast, Provenance};
 use crate::checkpoint::{self, Checkpoint, History};
-use crate::course::{more_iterations, Course, Start};
+use crate::displayed::DisplayedPair;
 use crate::figures::FiguresJob;
 use crate::latest::Latest;
+use crate::logged_run::LoggedRun;
 use crate::session::{landmarks, Mark, RunLog};
-use crate::{Parts, Scene, Toolbox};
 
 /// Shapes are shown at most this often.
 const FRAME_INTERVAL: Duration = Duration::from_millis(33);
@@ -52,8 +53,7 @@ pub(crate) enum Update {
 
 /// What a drape needs.
 pub(crate) struct RunnerParts {
-    pub(crate) scene: Scene,
-    pub(crate) toolbox: Arc<dyn Toolbox>,
+    pub(crate) displayed: DisplayedPair,
     pub(crate) broadcast: Arc<Broadcast>,
     pub(crate) figures: Arc<Latest<FiguresJob>>,
     /// Where it is kept.
@@ -108,20 +108,20 @@ fn run(
     orders: &Receiver<Order>,
     tell: &dyn Fn(Update),
 ) -> Result<()> {
-    let start = Start::new(&parts.scene, parts.toolbox.as_ref(), &parts.log)?;
-    let course = match &parts.state {
-        Some(state) => Course::restored(&start, parts.log.clone(), state)?,
-        None => Course::replayed(&start, &parts.log, |step| {
+    let shapes = &parts.displayed.shapes;
+    let drape = match &parts.state {
+        Some(state) => LoggedRun::restored(shapes, parts.log.clone(), state)?,
+        None => LoggedRun::replayed(shapes, &parts.log, |step| {
             ensure!(*lock(is_wanted), "the drape was given up");
             parts.broadcast.record_step(step);
             Ok(())
         })?,
     };
     let mut run = Run {
-        n_more: more_iterations(&start.settings.config),
+        n_more: Draping::n_more(drape.preset()),
         parts,
         is_wanted,
-        course,
+        drape,
         tell,
         shown: Instant::now(),
         saved: Instant::now(),
@@ -131,8 +131,8 @@ fn run(
     run.tell_progress(None);
     run.show();
     run.save()?;
-    let log = run.course.log().clone();
-    let is_over = run.is_over();
+    let log = run.drape.log().clone();
+    let is_over = run.drape.is_over();
     if is_over {
         run.judge(true);
     }
@@ -147,7 +147,7 @@ fn run(
 struct Run<'a> {
     parts: &'a RunnerParts,
     is_wanted: &'a Mutex<bool>,
-    course: Course<'a>,
+    drape: LoggedRun,
     n_more: usize,
     tell: &'a dyn Fn(Update),
     shown: Instant,
@@ -179,13 +179,13 @@ impl Run<'_> {
                 }
                 Some(Order::Pause) if is_running => {
                     is_running = false;
-                    self.rest(Update::Paused(self.course.log().clone()))?;
+                    self.rest(Update::Paused(self.drape.log().clone()))?;
                 }
                 Some(Order::Pause) => {}
                 Some(Order::Step) => {
                     is_running = false;
                     if self.advance()? {
-                        self.rest(Update::Paused(self.course.log().clone()))?;
+                        self.rest(Update::Paused(self.drape.log().clone()))?;
                     }
                 }
                 Some(order) => self.change(order)?,
@@ -193,19 +193,15 @@ impl Run<'_> {
         }
     }
 
-    fn is_over(&self) -> bool {
-        self.course.log().iteration >= self.course.n_iterations()
-    }
-
     /// One iteration; false when it was the last.
     fn advance(&mut self) -> Result<bool> {
         let began = Instant::now();
-        let step = self.course.step()?;
+        let step = self.drape.step()?;
         if let Some(step) = &step {
             self.pace.add(began.elapsed());
             self.parts.broadcast.record_step(step);
         }
-        let is_over = self.is_over();
+        let is_over = self.drape.is_over();
         if self.shown.elapsed() >= FRAME_INTERVAL || is_over {
             self.show();
             self.tell_progress(step.as_ref());
@@ -217,7 +213,7 @@ impl Run<'_> {
             self.save()?;
         }
         if is_over {
-            self.rest(Update::Finished(self.course.log().clone()))?;
+            self.rest(Update::Finished(self.drape.log().clone()))?;
         }
         Ok(!is_over)
     }
@@ -225,19 +221,19 @@ impl Run<'_> {
     /// Does something to the drape; what holds already is not done again.
     fn change(&mut self, order: Order) -> Result<()> {
         match order {
-            Order::Marks(marks) if marks != self.course.log().last_landmarks() => {
-                self.course.mark(marks)?;
+            Order::Marks(marks) if marks != self.drape.log().last_landmarks() => {
+                self.drape.set_marks(marks)?;
             }
-            Order::Parts(parts) if parts != *self.course.log().last_parts() => {
-                self.course.treat(parts)?;
+            Order::Parts(parts) if parts != *self.drape.log().last_parts() => {
+                self.drape.set_parts(parts)?;
             }
-            Order::Extend => self.course.extend(self.n_more),
+            Order::Extend => self.drape.extend(self.n_more),
             _ => return Ok(()),
         }
         self.save()?;
         self.show();
         self.tell_progress(None);
-        (self.tell)(Update::Changed(self.course.log().clone()));
+        (self.tell)(Update::Changed(self.drape.log().clone()));
         Ok(())
     }
 
@@ -251,24 +247,24 @@ impl Run<'_> {
     }
 
     fn show(&mut self) {
-        let Self { parts, course, .. } = self;
-        let x = Arc::new(course.positions());
+        let Self { parts, drape, .. } = self;
+        let x = Arc::new(drape.positions());
         let provenance = Provenance {
-            log: course.log().clone(),
-            network: course.network(),
+            log: drape.log().clone(),
+            network: drape.network(),
         };
         let is_wanted = lock(self.is_wanted);
         if *is_wanted {
-            parts.broadcast.show_drape(&parts.scene, x, provenance);
+            parts.broadcast.show_drape(&parts.displayed, x, provenance);
         }
         self.shown = Instant::now();
     }
 
     fn judge(&mut self, is_resting: bool) {
-        let log = self.course.log();
+        let log = self.drape.log();
         self.parts.figures.ask(FiguresJob {
-            scene: self.parts.scene.clone(),
-            positions: Arc::new(self.course.positions()),
+            displayed: self.parts.displayed.clone(),
+            positions: Arc::new(self.drape.positions()),
             landmarks: landmarks(log.last_landmarks()),
             iteration: Some(log.iteration),
             is_resting,
@@ -278,9 +274,9 @@ impl Run<'_> {
 
     fn save(&mut self) -> Result<()> {
         let checkpoint = Checkpoint {
-            state: self.course.state(),
+            state: self.drape.state(),
             history: History {
-                log: self.course.log().clone(),
+                log: self.drape.log().clone(),
                 curves: self.parts.broadcast.curves(),
             },
         };
@@ -293,8 +289,8 @@ impl Run<'_> {
     }
 
     fn tell_progress(&self, step: Option<&StepReport>) {
-        let done = self.course.log().iteration;
-        let n = self.course.n_iterations();
+        let done = self.drape.log().iteration;
+        let n = self.drape.n_iterations();
         let terms = step.iter().flat_map(|step| &step.terms);
         let terms: Vec<_> = terms.map(|t| json!([t.name, t.value * t.weight])).collect();
         let message = json!({

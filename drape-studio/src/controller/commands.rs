@@ -3,11 +3,11 @@
 use std::sync::Arc;
 
 use anyhow::{Context as _, Result};
+use mesh_draping::{Draping, Preset};
 
 use super::can::{Action, Status, OPEN_FIRST};
 use super::{ActiveRun, Command, Controller, Inbox};
 use crate::checkpoint::{self, Checkpoint};
-use crate::course::more_iterations;
 use crate::runner::{Order, Runner, RunnerParts, Update};
 use crate::session::{landmarks, Mark, RunLog};
 
@@ -51,7 +51,7 @@ impl Controller {
     fn begin_paused(&mut self) -> Result<()> {
         self.notice = None;
         let log = RunLog {
-            settings: self.settings.toml.clone(),
+            settings: self.session.document.settings.clone(),
             parts: self.session.document.parts.clone(),
             landmarks: self.complete_marks(),
             events: Vec::new(),
@@ -63,13 +63,12 @@ impl Controller {
     }
 
     fn start_runner(&mut self, log: RunLog, state: Option<neural_drape::DrapeState>) -> Result<()> {
-        let scene = self.scene().context(OPEN_FIRST)?;
-        let n_more = more_iterations(&self.toolbox.settings(&log.settings)?.config);
+        let displayed = self.displayed.clone().context(OPEN_FIRST)?;
+        let n_more = Draping::n_more(&Preset::from_toml(&log.settings)?);
         self.n_runs += 1;
         let (number, inbox) = (self.n_runs, self.inbox.clone());
         let parts = RunnerParts {
-            scene,
-            toolbox: Arc::clone(&self.toolbox),
+            displayed,
             broadcast: Arc::clone(&self.broadcast),
             figures: Arc::clone(&self.figures),
             checkpoint: self.checkpoint_path(),
@@ -142,7 +141,7 @@ impl Controller {
 
     /// Goes on, after a restart, with the drape that was in progress.
     pub(super) fn take_up_run(&mut self) {
-        if self.session.run.is_none() || self.scene().is_none() {
+        if self.session.run.is_none() || self.displayed.is_none() {
             self.session.run = None;
             return;
         }

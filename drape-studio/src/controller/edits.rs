@@ -2,8 +2,8 @@
 
 use anyhow::{ensure, Context as _, Result};
 use mesh_core::Landmark;
+use mesh_draping::Preset;
 use serde_json::Value;
-use toml::Table;
 
 use super::can::Action;
 use super::{Controller, Edit};
@@ -45,9 +45,13 @@ impl Controller {
                 self.session.edit(|d| d.mirror = axes);
             }
             Edit::Part { name, treatment } => self.treat(&name, treatment)?,
-            Edit::Preset { name } => self.set_preset(&name)?,
-            Edit::Seed { seed } => self.set_seed(seed)?,
-            Edit::Settings { toml } => self.set_settings(&toml)?,
+            Edit::Preset { name } => self.choose_preset(&name)?,
+            Edit::Seed { seed } => {
+                let mut preset = self.preset.clone();
+                preset.drape.seed = u64::from(seed);
+                self.set_preset(&preset);
+            }
+            Edit::Settings { toml } => self.set_preset(&Preset::from_toml(&toml)?),
             Edit::Undo => {
                 self.situation().check(Action::Undo)?;
                 self.session.undo();
@@ -63,10 +67,9 @@ impl Controller {
 
     /// After an edit: settings as the document has them, the preview, every page.
     pub(super) fn edited(&mut self) {
-        if self.settings.toml != self.session.document.settings {
-            if let Ok(settings) = self.toolbox.settings(&self.session.document.settings) {
-                self.settings = settings;
-            }
+        // Settings that cannot be read never come into the document.
+        if let Ok(preset) = Preset::from_toml(&self.session.document.settings) {
+            self.preset = preset;
         }
         if self.dragged_from.is_none() {
             self.pass_on();
@@ -75,22 +78,17 @@ impl Controller {
         self.changed();
     }
 
-    /// The settings of a preset, with the seed as it is.
-    fn set_preset(&mut self, name: &str) -> Result<()> {
-        let seed = self.settings.config.seed;
-        self.set_settings(&format!("preset = {name:?}\nseed = {seed}\n"))
-    }
-
-    fn set_seed(&mut self, seed: u32) -> Result<()> {
-        let mut table: Table = self.settings.toml.parse()?;
-        table.insert("seed".to_owned(), i64::from(seed).into());
-        self.set_settings(&table.to_string())
-    }
-
-    fn set_settings(&mut self, toml: &str) -> Result<()> {
-        let settings = self.toolbox.settings(toml)?;
-        self.session.edit(|d| d.settings.clone_from(&settings.toml));
+    /// A preset, with the seed as it is.
+    fn choose_preset(&mut self, name: &str) -> Result<()> {
+        let mut preset = Preset::named(name)?;
+        preset.drape.seed = self.preset.drape.seed;
+        self.set_preset(&preset);
         Ok(())
+    }
+
+    fn set_preset(&mut self, preset: &Preset) {
+        let settings = preset.to_toml();
+        self.session.edit(|d| d.settings = settings);
     }
 
     pub(super) fn find(&self, id: u32) -> Result<&Mark> {

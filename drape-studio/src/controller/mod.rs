@@ -22,17 +22,19 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use mesh_core::{Landmark, TriangleBvh};
+use mesh_draping::Preset;
 use serde_json::Value;
 use tokio::sync::oneshot;
 
 use crate::broadcast::{Broadcast, Provenance, ShownKind, ShownShape};
 use crate::checkpoint;
+use crate::displayed::{DisplayedPair, DisplayedSource, DisplayedTarget};
 use crate::figures::{judge, FiguresJob};
 use crate::latest::Latest;
 use crate::preview::{live_preview, preview, PreviewJob, PreviewOf};
 use crate::runner::{Runner, Update};
 use crate::session::{Document, InputRecord, RunLog, Session};
-use crate::{InnerPart, Scene, Settings, Source, Target, Toolbox};
+use crate::shapes::Shapes;
 
 /// Edits are on disk after this long.
 const SAVE_DELAY: Duration = Duration::from_millis(400);
@@ -46,22 +48,24 @@ pub(crate) enum Inbox {
     Update(u32, Update),
     /// From the preview of this number.
     Previewed(u32, Result<Vec<String>, String>),
-    /// The inner parts of a source.
-    Inner(Arc<Source>, Vec<InnerPart>),
+    /// The inner surfaces of these are known.
+    LookedInside(Shapes),
 }
 
 /// A file that was opened.
 pub(crate) enum Opened {
-    Source(Arc<Source>, InputRecord),
-    Target(Arc<Target>, InputRecord),
+    Source(Arc<DisplayedSource>, InputRecord),
+    Target(Arc<DisplayedTarget>, InputRecord),
     Landmarks(Vec<Landmark>),
 }
 
 /// Everything that an export needs.
 pub(crate) struct Snapshot {
     pub(crate) session: Session,
-    pub(crate) source: Option<Arc<Source>>,
-    pub(crate) target: Option<Arc<Target>>,
+    pub(crate) source: Option<Arc<DisplayedSource>>,
+    pub(crate) target: Option<Arc<DisplayedTarget>>,
+    /// The two, where both are open.
+    pub(crate) displayed: Option<DisplayedPair>,
     /// The shape that is shown; where there is a drape, that, with how it came about.
     pub(crate) shown: Option<Arc<ShownShape>>,
 }
@@ -91,26 +95,26 @@ impl ControllerHandle {
 
 /// What a controller is provenance of.
 pub(crate) struct ControllerParts {
-    pub(crate) toolbox: Arc<dyn Toolbox>,
     pub(crate) broadcast: Arc<Broadcast>,
     pub(crate) session: Session,
-    pub(crate) source: Option<Arc<Source>>,
-    pub(crate) target: Option<Arc<Target>>,
+    pub(crate) source: Option<Arc<DisplayedSource>>,
+    pub(crate) target: Option<Arc<DisplayedTarget>>,
     pub(crate) session_path: PathBuf,
     /// What the user should know at first.
     pub(crate) notice: Option<String>,
 }
 
 pub(crate) struct Controller {
-    toolbox: Arc<dyn Toolbox>,
     broadcast: Arc<Broadcast>,
     inbox: Sender<Inbox>,
     session: Session,
     session_path: PathBuf,
-    source: Option<Arc<Source>>,
-    target: Option<Arc<Target>>,
+    source: Option<Arc<DisplayedSource>>,
+    target: Option<Arc<DisplayedTarget>>,
+    /// The two, where both are open.
+    displayed: Option<DisplayedPair>,
     /// The document's settings, read.
-    settings: Settings,
+    preset: Preset,
     run: Option<ActiveRun>,
     n_runs: u32,
     preview: Latest<PreviewJob>,
@@ -121,8 +125,6 @@ pub(crate) struct Controller {
     warnings: Vec<String>,
     preview_error: Option<String>,
     notice: Option<String>,
-    /// Parts of the source that no ray from outside reaches.
-    inner: Vec<InnerPart>,
     /// The document before the drag that goes on.
     dragged_from: Option<Document>,
     /// The shape shown under this number, to pick on.
@@ -137,23 +139,22 @@ impl Controller {
     pub(crate) fn start(parts: ControllerParts) -> anyhow::Result<ControllerHandle> {
         let (inbox, messages) = channel();
         let previewed = inbox.clone();
-        let settings = parts.toolbox.settings(&parts.session.document.settings)?;
+        let preset = Preset::from_toml(&parts.session.document.settings)?;
         let mut controller = Self {
             figures: Arc::new(judge(Arc::clone(&parts.broadcast))),
             preview: preview(
-                Arc::clone(&parts.toolbox),
                 Arc::clone(&parts.broadcast),
                 move |number, found| drop(previewed.send(Inbox::Previewed(number, found))),
             ),
             live: live_preview(Arc::clone(&parts.broadcast)),
             inbox: inbox.clone(),
-            toolbox: parts.toolbox,
             broadcast: parts.broadcast,
             session: parts.session,
             session_path: parts.session_path,
+            displayed: both(parts.source.as_ref(), parts.target.as_ref()),
             source: parts.source,
             target: parts.target,
-            settings,
+            preset,
             run: None,
             n_runs: 0,
             n_previews: 0,
@@ -161,13 +162,13 @@ impl Controller {
             warnings: Vec::new(),
             preview_error: None,
             notice: parts.notice,
-            inner: Vec::new(),
             dragged_from: None,
             shown_bvh: None,
             revision: 0,
             unsaved_since: Some(Instant::now()),
         };
-        controller.broadcast.set_scene(controller.scene());
+        let displayed = controller.displayed.clone();
+        controller.broadcast.set_displayed(displayed);
         controller.take_up_run();
         controller.look_inside();
         controller.ask_preview();
@@ -216,7 +217,7 @@ impl Controller {
                 self.publish();
             }
             Inbox::Previewed(..) => {}
-            Inbox::Inner(of, inner) => self.found_inside(&of, inner),
+            Inbox::LookedInside(shapes) => self.looked_inside(&shapes),
         }
     }
 
@@ -232,20 +233,13 @@ impl Controller {
     /// All that decides what can be done.
     fn situation(&self) -> Situation {
         Situation {
-            has_inputs: self.source.is_some() && self.target.is_some(),
+            has_inputs: self.displayed.is_some(),
             run: self.run.as_ref().map(|run| run.status),
             is_pending: self.are_marks_pending() || self.are_parts_pending(),
             has_landmarks: !self.session.document.marks.is_empty(),
             has_undo: self.session.can_undo(),
             has_redo: self.session.can_redo(),
         }
-    }
-
-    fn scene(&self) -> Option<Scene> {
-        Some(Scene {
-            source: Arc::clone(self.source.as_ref()?),
-            target: Arc::clone(self.target.as_ref()?),
-        })
     }
 
     /// What the session looks like now goes to every page, and soon to disk.
@@ -270,7 +264,7 @@ impl Controller {
 
     /// Asks for the shape that the landmarks as they are would give.
     fn ask_preview(&mut self) {
-        let Some(scene) = self.scene() else {
+        let Some(displayed) = self.displayed.clone() else {
             return;
         };
         self.n_previews = self.n_previews.wrapping_add(1);
@@ -288,9 +282,10 @@ impl Controller {
         self.newest_preview.store(self.n_previews, Ordering::SeqCst);
         let job = PreviewJob {
             number: self.n_previews,
-            scene,
-            settings: self.settings.clone(),
+            displayed,
+            method: self.preset.initial,
             landmarks: self.landmarks(),
+            numbers: self.numbers(),
             shown,
             newest: Arc::clone(&self.newest_preview),
             figures: Arc::clone(&self.figures),
@@ -301,13 +296,13 @@ impl Controller {
 
     /// Shows and judges the drape again, where a shape that it might have taken is shown.
     fn show_drape_again(&self) {
-        if let (true, Some(scene), Some(shown)) = (
+        if let (true, Some(displayed), Some(shown)) = (
             self.broadcast.show_drape_again(),
-            self.scene(),
+            self.displayed.clone(),
             self.broadcast.draped(),
         ) {
             self.figures.ask(FiguresJob {
-                scene,
+                displayed,
                 positions: Arc::clone(&shown.positions),
                 landmarks: self.landmarks(),
                 iteration: Some(shown.iteration()),
@@ -318,6 +313,13 @@ impl Controller {
 
     fn landmarks(&self) -> Vec<Landmark> {
         crate::session::landmarks(&self.session.document.marks)
+    }
+
+    /// The numbers that the markers of these landmarks have: all are counted, also those that are half made.
+    fn numbers(&self) -> Vec<usize> {
+        let marks = self.session.document.marks.iter().zip(1..);
+        let complete = marks.filter(|(mark, _)| mark.landmark().is_some());
+        complete.map(|(_, number)| number).collect()
     }
 
     fn snapshot(&self) -> Snapshot {
@@ -335,6 +337,7 @@ impl Controller {
             session,
             source: self.source.clone(),
             target: self.target.clone(),
+            displayed: self.displayed.clone(),
             shown: shown.or(preview),
         }
     }
@@ -361,9 +364,9 @@ impl Controller {
         self.dragged_from = None;
         self.shown_bvh = None;
         self.warnings.clear();
-        self.inner.clear();
         self.notice = None;
-        self.broadcast.set_scene(self.scene());
+        self.displayed = both(self.source.as_ref(), self.target.as_ref());
+        self.broadcast.set_displayed(self.displayed.clone());
         self.look_inside();
         self.ask_preview();
         self.changed();
@@ -373,4 +376,12 @@ impl Controller {
     fn checkpoint_path(&self) -> PathBuf {
         checkpoint::path_beside(&self.session_path)
     }
+}
+
+/// A source and a target, where both are there.
+fn both(
+    source: Option<&Arc<DisplayedSource>>,
+    target: Option<&Arc<DisplayedTarget>>,
+) -> Option<DisplayedPair> {
+    Some(DisplayedPair::new(Arc::clone(source?), Arc::clone(target?)))
 }

@@ -1,16 +1,13 @@
 //! Places on the shapes: marked, mirrored, dragged.
 
 use anyhow::{ensure, Result};
-use mesh_core::{Landmark, Point3};
+use mesh_core::Point3;
+use mesh_draping::landmarks::{counterpart, MirrorPlanes, Plane};
 use serde_json::{json, Value};
 
 use super::{Controller, Shape};
 use crate::pick::{first_hit, Ray};
-use crate::scene::mirrored;
 use crate::session::{Mark, MarkKind, SourcePlace, MAX_MARKS};
-
-/// A landmark nearer than this share of the longest side to its mirror image has none of its own.
-const ON_MIRROR: f64 = 0.01;
 
 /// A place on either shape.
 #[derive(Clone, Copy)]
@@ -30,14 +27,14 @@ impl Controller {
             Shape::Target => self.target.as_ref()?.pick(ray).map(Place::Target),
             Shape::Result => {
                 let shown = self.broadcast.shown.borrow().clone()?;
-                let scene = self.scene()?;
-                let source = &scene.source;
+                let displayed = self.displayed.as_ref()?;
+                let source = &displayed.source;
                 if self.shown_bvh.as_ref().map(|(serial, _)| *serial) != Some(shown.serial) {
                     self.shown_bvh = Some((shown.serial, source.moved_bvh(&shown.positions)));
                 }
                 let (_, bvh) = self.shown_bvh.as_ref()?;
-                let location = first_hit(bvh, &scene.target.frame, ray)?;
-                Some(Place::Source(SourcePlace::of(&source.place(location)?)))
+                let location = first_hit(bvh, &displayed.target.frame, ray)?;
+                Some(Place::Source(SourcePlace::of(&source.source.place(location)?)))
             }
         }
     }
@@ -80,23 +77,13 @@ impl Controller {
 
     /// The mirror image of a landmark that is complete, unless it lies on the mirror.
     fn twin(&self, mark: &Mark, [of_source, of_target]: [usize; 2], id: u32) -> Option<Mark> {
-        let scene = self.scene()?;
-        let landmark = mark.landmark()?;
-        let (source, target) = (&scene.source, scene.target.judged());
-
-        let place = landmark.source.position(&source.rest);
-        let image = mirrored(&place, of_source, &source.bounds());
-        if (image - place).norm() < ON_MIRROR * source.frame.scale {
-            return None;
-        }
-        let twin = Landmark {
-            name: landmark.name.as_deref().map(other_side),
-            source: source.closest_place(&image)?,
-            target: target
-                .closest_point(&mirrored(&landmark.target, of_target, &target.bounds()))
-                .point,
-            kind: landmark.kind,
+        let shapes = &self.displayed.as_ref()?.shapes;
+        let planes = MirrorPlanes {
+            source: Plane::through_middle(&shapes.source.bounds(), of_source),
+            target: Plane::through_middle(&shapes.target.judged().bounds(), of_target),
         };
+        let pair = shapes.pair(Vec::new());
+        let twin = counterpart(&pair, &mark.landmark()?, &planes)?;
         Some(Mark::of(id, &twin))
     }
 
@@ -139,34 +126,5 @@ impl Place {
             Self::Source(place) => mark.source = Some(place),
             Self::Target(point) => mark.target = Some(point.into()),
         }
-    }
-}
-
-/// `left ear` ↔ `right ear`; other names say that they are mirrored.
-fn other_side(name: &str) -> String {
-    for (one, other) in [
-        ("left", "right"),
-        ("Left", "Right"),
-        ("_l", "_r"),
-        (".L", ".R"),
-    ] {
-        for (from, to) in [(one, other), (other, one)] {
-            if name.contains(from) {
-                return name.replacen(from, to, 1);
-            }
-        }
-    }
-    format!("{name} mirrored")
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn names_change_sides() {
-        assert_eq!(other_side("left ear"), "right ear");
-        assert_eq!(other_side("hand.R"), "hand.L");
-        assert_eq!(other_side("tail"), "tail mirrored");
     }
 }

@@ -1,11 +1,11 @@
 //! What a page may ask for: a query changes nothing, an edit changes the document and can be undone, a command drives
 //! the drape.
 
+use mesh_draping::Treatment;
 use serde::{Deserialize, Serialize};
 
 use crate::pick::Ray;
 use crate::session::MarkKind;
-use crate::Treatment;
 
 /// Which shape a ray is aimed at.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]

@@ -1,5 +1,6 @@
 //! The state as every page gets it.
 
+use mesh_draping::Preset;
 use serde_json::{json, Value};
 
 use super::Controller;
@@ -24,12 +25,12 @@ impl Controller {
             "parts": document.parts,
             "inner": self.inner_state(),
             "settings": {
-                "preset": self.settings.preset,
-                "seed": self.settings.config.seed,
-                "n_iterations": self.settings.config.stages.iter().map(|s| s.n_iterations).sum::<usize>(),
-                "toml": self.settings.toml,
+                "preset": self.preset.name,
+                "seed": self.preset.drape.seed,
+                "n_iterations": self.preset.drape.stages.iter().map(|s| s.n_iterations).sum::<usize>(),
+                "toml": document.settings,
             },
-            "presets": self.toolbox.presets(),
+            "presets": Preset::names().collect::<Vec<_>>(),
             "can": situation.can(),
             "discards": situation.discarding(),
             "run": self.run_state(),
@@ -41,9 +42,9 @@ impl Controller {
             return Value::Null;
         };
         json!({
-            "name": file_name(source.file.path()),
-            "n_vertices": source.display.n_vertices,
-            "n_faces": source.display.n_faces,
+            "name": source.source.file().map(|file| file_name(file.path())),
+            "n_vertices": source.buffers.n_vertices,
+            "n_faces": source.buffers.n_faces,
             "kind": "mesh",
             "hash": self.session.source.as_ref().map(|r| &r.fnv1a),
             "symmetry": source.symmetry,
@@ -56,10 +57,10 @@ impl Controller {
             return Value::Null;
         };
         json!({
-            "name": file_name(&target.path),
-            "n_vertices": target.display.n_vertices,
-            "n_faces": target.display.n_faces,
-            "kind": if target.is_cloud() { "cloud" } else { "mesh" },
+            "name": target.target.path().map(file_name),
+            "n_vertices": target.buffers.n_vertices,
+            "n_faces": target.buffers.n_faces,
+            "kind": if target.target.is_cloud() { "cloud" } else { "mesh" },
             "hash": self.session.target.as_ref().map(|r| &r.fnv1a),
             "symmetry": target.symmetry,
         })

@@ -19,7 +19,6 @@ use tokio::net::TcpListener;
 
 use crate::broadcast::Broadcast;
 use crate::controller::ControllerHandle;
-use crate::Toolbox;
 pub(crate) use guard::Guard;
 
 /// Largest file that a page may send.
@@ -31,7 +30,6 @@ const MAX_SOCKETS: usize = 32;
 pub(crate) struct App {
     pub(crate) controller: ControllerHandle,
     pub(crate) broadcast: Arc<Broadcast>,
-    pub(crate) toolbox: Arc<dyn Toolbox>,
     /// Folder of the files that pages send.
     pub(crate) uploads: PathBuf,
     pub(crate) sockets: tokio::sync::Semaphore,
@@ -41,13 +39,11 @@ impl App {
     pub(crate) fn new(
         controller: ControllerHandle,
         broadcast: Arc<Broadcast>,
-        toolbox: Arc<dyn Toolbox>,
         uploads: PathBuf,
     ) -> Self {
         Self {
             controller,
             broadcast,
-            toolbox,
             uploads,
             sockets: tokio::sync::Semaphore::new(MAX_SOCKETS),
         }
@@ -59,7 +55,7 @@ pub(crate) async fn serve(listener: TcpListener, guard: Guard, app: App) -> std:
     let app = Arc::new(app);
     let studio = Router::new()
         .route("/{file}", get(assets::file))
-        .route("/mesh/{side}", get(mesh))
+        .route("/mesh/{name}", get(mesh))
         .route("/open/{role}/{name}", post(open::open))
         .route("/export/{what}", get(export::export))
         .route("/ws", get(socket::upgrade))
@@ -76,16 +72,16 @@ pub(crate) async fn serve(listener: TcpListener, guard: Guard, app: App) -> std:
 }
 
 /// The buffers of a shape.
-async fn mesh(State(app): State<Arc<App>>, Path(side): Path<String>) -> Response {
+async fn mesh(State(app): State<Arc<App>>, Path(name): Path<String>) -> Response {
     let (sender, answer) = tokio::sync::oneshot::channel();
     app.controller
         .send(crate::controller::Inbox::Snapshot(sender));
     let Ok(snapshot) = answer.await else {
         return StatusCode::SERVICE_UNAVAILABLE.into_response();
     };
-    let bytes = match side.as_str() {
-        "source" => snapshot.source.map(|s| s.display.bytes.clone()),
-        "target" => snapshot.target.map(|t| t.display.bytes.clone()),
+    let bytes = match name.as_str() {
+        "source" => snapshot.source.map(|s| s.buffers.bytes.clone()),
+        "target" => snapshot.target.map(|t| t.buffers.bytes.clone()),
         _ => None,
     };
     match bytes {

@@ -159,10 +159,10 @@ impl<'a> Connection<'a> {
 
     async fn send_heat(&mut self, heat: Heat) -> bool {
         let shown = self.app.broadcast.shown.borrow().clone();
-        let Some((scene, shown)) = self.app.broadcast.scene().zip(shown) else {
+        let Some((displayed, shown)) = self.app.broadcast.displayed().zip(shown) else {
             return true;
         };
-        match spawn_blocking(move || heat.message(&scene, &shown)).await {
+        match spawn_blocking(move || heat.message(&displayed, &shown)).await {
             Ok(message) => self.send_bytes(message.into()).await,
             Err(_) => true,
         }

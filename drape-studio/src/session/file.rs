@@ -139,7 +139,7 @@ fn is_finite(mark: &Mark) -> bool {
 mod tests {
     use super::super::{Event, MarkKind, RunLog, SourcePlace};
     use super::*;
-    use crate::Parts;
+    use mesh_draping::Parts;
 
     fn session() -> Session {
         let mut session = Session::new("preset = \"standard\"\n".to_owned());
