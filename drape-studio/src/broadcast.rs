@@ -113,7 +113,12 @@ impl Broadcast {
     }
 
     /// Shows a drape as far as it is.
-    pub(crate) fn show_drape(&self, displayed: &DisplayedPair, x: Arc<Positions>, provenance: Provenance) {
+    pub(crate) fn show_drape(
+        &self,
+        displayed: &DisplayedPair,
+        x: Arc<Positions>,
+        provenance: Provenance,
+    ) {
         self.put(displayed, ShownKind::Draped, x, Some(provenance));
     }
 

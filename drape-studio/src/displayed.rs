@@ -6,8 +6,8 @@ use std::sync::Arc;
 use anyhow::Result;
 use mesh_core::io::NamedFaces;
 use mesh_core::{
-    Location, MeshPoint, Point3, PolygonSoup, Positions, TargetSurface, TriangleBvh,
-    Triangulation, UnitFrame, Vector3, VertexData, VertexId,
+    Location, MeshPoint, Point3, PolygonSoup, Positions, TargetSurface, TriangleBvh, Triangulation,
+    UnitFrame, Vector3, VertexData, VertexId,
 };
 use mesh_draping::landmarks::{source_symmetry, target_symmetry};
 use mesh_draping::{Source, Target};

@@ -47,7 +47,11 @@ pub(crate) fn judge(broadcast: Arc<Broadcast>) -> Latest<FiguresJob> {
 
 fn tell(broadcast: &Broadcast, job: &FiguresJob) {
     let (source, target) = (&job.displayed.shapes.source, job.displayed.target.judged());
-    let (triangulation, rest, x) = (source.triangulation(), source.rest(), job.positions.as_ref());
+    let (triangulation, rest, x) = (
+        source.triangulation(),
+        source.rest(),
+        job.positions.as_ref(),
+    );
     let config = EvaluationConfig {
         n_samples: N_SAMPLES,
         seed: 0,
@@ -115,7 +119,10 @@ impl Heat {
         let source = &displayed.shapes.source;
         let (t, rest) = (source.triangulation(), source.rest());
         match self {
-            Self::Distance => (vertex_distances(x, displayed.target.judged()).into_vec(), false),
+            Self::Distance => (
+                vertex_distances(x, displayed.target.judged()).into_vec(),
+                false,
+            ),
             Self::Stretch => {
                 let stretch = face_stretch(source.mesh(), t, rest, x);
                 ((0..t.len()).map(|k| stretch[t.parent(k)]).collect(), true)

@@ -10,8 +10,8 @@ use mesh_draping::{landmarks, Preset};
 
 use crate::broadcast::Broadcast;
 use crate::controller::{Controller, ControllerParts};
-use crate::server::{serve, App, Guard};
 use crate::displayed::{DisplayedSource, DisplayedTarget};
+use crate::server::{serve, App, Guard};
 use crate::session::{self, InputRecord, Mark, Session};
 
 /// What to open.
@@ -170,9 +170,9 @@ fn open_inputs(
         let source = source_record.as_ref().map(|record| {
             scope.spawn(|| read_or_forget(record, options.source.is_some(), DisplayedSource::read))
         });
-        let target = target_record.as_ref().map(|record| {
-            read_or_forget(record, options.target.is_some(), DisplayedTarget::read)
-        });
+        let target = target_record
+            .as_ref()
+            .map(|record| read_or_forget(record, options.target.is_some(), DisplayedTarget::read));
         let source = source.map(|thread| {
             thread
                 .join()
@@ -233,11 +233,7 @@ fn read_or_forget<T>(
     }
 }
 
-fn adopt_landmarks(
-    path: &Path,
-    session: &mut Session,
-    inputs: &Inputs,
-) -> Result<()> {
+fn adopt_landmarks(path: &Path, session: &mut Session, inputs: &Inputs) -> Result<()> {
     let (source, target) = inputs
         .source
         .clone()

@@ -1,8 +1,7 @@
 //! Corners that are far off, kept in mind from one iteration to the next.
 
-use mesh_core::sampling::TrianglePlace;
+use mesh_core::sampling::{SeededRng, TrianglePlace};
 use mesh_core::{Location, Point3, Positions, SurfaceSample, TargetSurface, Triangulation};
-use rand::{Rng, RngCore};
 
 use crate::matching::SurfaceMatch;
 use crate::pairing::{Side, NO_HINT};
@@ -55,11 +54,7 @@ impl HardPlaces {
     }
 
     /// The mesh's far corners, each with its closest point on the target.
-    pub(crate) fn match_mesh(
-        &mut self,
-        side: &Side<'_>,
-        rng: &mut dyn RngCore,
-    ) -> Vec<SurfaceMatch> {
+    pub(crate) fn match_mesh(&mut self, side: &Side<'_>, rng: &mut SeededRng) -> Vec<SurfaceMatch> {
         let n = side.config.n_hard;
         let mut rows = std::mem::take(&mut self.kept.of_mesh);
         rows.extend(random_rows(n, self.mesh_corners.len(), rng));
@@ -76,7 +71,7 @@ impl HardPlaces {
     pub(crate) fn match_target(
         &mut self,
         side: &Side<'_>,
-        rng: &mut dyn RngCore,
+        rng: &mut SeededRng,
     ) -> Vec<SurfaceMatch> {
         let n = side.config.n_hard;
         let mut rows = std::mem::take(&mut self.kept.of_target);
@@ -117,9 +112,9 @@ impl HardPlaces {
 }
 
 /// `n` random rows of `len`; none of an empty list.
-fn random_rows(n: usize, len: usize, rng: &mut dyn RngCore) -> impl Iterator<Item = usize> + '_ {
+fn random_rows(n: usize, len: usize, rng: &mut SeededRng) -> impl Iterator<Item = usize> + '_ {
     let n = if len == 0 { 0 } else { n };
-    (0..n).map(move |_| rng.random_range(0..len))
+    (0..n).map(move |_| rng.below(len))
 }
 
 /// The pairs that `work` finds; it uses and renews the hints of these rows.

@@ -1,12 +1,13 @@
 //! Random places on both surfaces and their closest points on the other: what the distance terms look at.
 
+use std::sync::Arc;
+
 use mesh_core::measure::triangle_area;
-use mesh_core::sampling::{TrianglePlace, TriangleSampler};
+use mesh_core::sampling::{SeededRng, TrianglePlace, TriangleSampler};
 use mesh_core::{
     Point3, Positions, Profile, TargetSurface, TriangleBvh, TriangleFans, Triangulation, UnitFrame,
     Vector3, VertexData, VertexId,
 };
-use rand::RngCore;
 
 use crate::boundary::Boundary;
 use crate::hard_places::{HardCorners, HardPlaces};
@@ -93,9 +94,9 @@ pub struct Beyond {
 /// Draws samples on a moving mesh and on its target and matches each with its closest point.
 ///
 /// The mesh lives in `frame`, the target in its own coordinates; matches are in `frame`.
-pub struct SurfaceMatcher<'a> {
-    triangulation: &'a Triangulation,
-    target: &'a dyn TargetSurface,
+pub struct SurfaceMatcher {
+    triangulation: Arc<Triangulation>,
+    target: Arc<dyn TargetSurface>,
     frame: UnitFrame,
     bvh: TriangleBvh,
     fans: TriangleFans,
@@ -109,24 +110,24 @@ pub struct SurfaceMatcher<'a> {
     used: Matches,
 }
 
-impl<'a> SurfaceMatcher<'a> {
+impl SurfaceMatcher {
     /// A matcher for the mesh at `x`, whose coordinates are those of `frame`.
     pub fn new(
-        triangulation: &'a Triangulation,
+        triangulation: &Arc<Triangulation>,
         x: &Positions,
-        target: &'a dyn TargetSurface,
+        target: &Arc<dyn TargetSurface>,
         frame: UnitFrame,
     ) -> Self {
         Self {
-            triangulation,
-            target,
+            triangulation: Arc::clone(triangulation),
+            target: Arc::clone(target),
             frame,
             bvh: TriangleBvh::new(triangulation.corners(x).collect()),
             fans: TriangleFans::new(triangulation.rows()),
             boundary: Boundary::new(triangulation, x.len()),
             by_face: TriangleSampler::new(std::iter::repeat_n(1.0, triangulation.len())),
             hints: Hints::default(),
-            hard: HardPlaces::new(triangulation, x.len(), target),
+            hard: HardPlaces::new(triangulation, x.len(), target.as_ref()),
             attraction: None,
             pairs: Vec::new(),
             used: Matches::default(),
@@ -152,7 +153,7 @@ impl<'a> SurfaceMatcher<'a> {
         x: &Positions,
         n_samples: usize,
         distance: f64,
-        rng: &mut dyn RngCore,
+        rng: &mut SeededRng,
     ) -> Beyond {
         let config = SamplingConfig {
             n_samples,
@@ -192,7 +193,7 @@ impl<'a> SurfaceMatcher<'a> {
         &mut self,
         x: &Positions,
         config: &SamplingConfig,
-        rng: &mut dyn RngCore,
+        rng: &mut SeededRng,
         profile: &mut Profile,
     ) -> Matches {
         profile.time("refit", || self.bvh.refit(self.triangulation.corners(x)));
@@ -201,9 +202,9 @@ impl<'a> SurfaceMatcher<'a> {
         self.hints.of_places.resize(places.len(), NO_HINT);
         self.hints.of_samples.resize(samples.len(), NO_HINT);
         let side = Side {
-            triangulation: self.triangulation,
+            triangulation: &self.triangulation,
             x,
-            target: self.target,
+            target: self.target.as_ref(),
             frame: self.frame,
             bvh: &self.bvh,
             fans: &self.fans,
@@ -243,7 +244,7 @@ impl<'a> SurfaceMatcher<'a> {
         &self,
         x: &Positions,
         config: &SamplingConfig,
-        rng: &mut dyn RngCore,
+        rng: &mut SeededRng,
     ) -> Vec<TrianglePlace> {
         let n_by_face = (config.n_samples as f64 * config.face_uniform).round() as usize;
         let n_by_area = config.n_samples.saturating_sub(n_by_face);

@@ -43,6 +43,30 @@ impl DrapeConfig {
     pub fn n_iterations(&self) -> usize {
         self.stages.iter().map(|s| s.n_iterations).sum()
     }
+
+    pub(crate) fn weights_at(&self, iteration: usize) -> Weights {
+        let mut start = 0;
+        for stage in &self.stages {
+            if iteration < start + stage.n_iterations {
+                let t = (iteration - start) as f64 / stage.n_iterations as f64;
+                return Weights::between(&stage.from, &stage.to, t);
+            }
+            start += stage.n_iterations;
+        }
+        self.stages.last().map_or(Weights::ZERO, |s| s.to)
+    }
+
+    /// The iteration at which each stage starts.
+    pub(crate) fn stage_starts(&self) -> Vec<usize> {
+        self.stages
+            .iter()
+            .scan(0, |next, stage| {
+                let start = *next;
+                *next += stage.n_iterations;
+                Some(start)
+            })
+            .collect()
+    }
 }
 
 /// What is optimised.
@@ -138,9 +162,7 @@ pub struct Sampling {
 
 impl Sampling {
     pub(crate) fn at(&self, iteration: usize, overlap: Overlap, mutual: f64) -> SamplingConfig {
-        let doublings = self
-            .double_every
-            .map_or(0, |every| iteration / every.max(1));
+        let doublings = self.double_every.map_or(0, |every| iteration / every);
         let factor = 1usize
             .checked_shl(doublings.min(40) as u32)
             .unwrap_or(usize::MAX);

@@ -1,5 +1,8 @@
 //! The stepper: one engine for every parametrisation and every preset.
 
+use std::sync::Arc;
+
+use mesh_core::sampling::SeededRng;
 use mesh_core::{
     Landmark, Positions, Profile, TargetSurface, Triangulation, UnitFrame, Vector3, VertexData,
     VertexId,
@@ -8,11 +11,10 @@ use mesh_loss::{
     Beyond, Chamfer, HardCorners, LandmarkDistance, Matches, NormalAgreement, Overlap,
     SurfaceMatcher, WorstDistance,
 };
-use rand::SeedableRng;
-use rand_chacha::ChaCha8Rng;
 
+use crate::check::MAX_ITERATIONS;
 use crate::config::{Descent, DrapeConfig, ParametrizationConfig, Stage, Weights};
-use crate::coverage::{lacking, Pairing, FAR_BEYOND, N_BEYOND};
+use crate::coverage::{lacking, Pairing, Target, FAR_BEYOND, N_BEYOND};
 use crate::network::{Network, NetworkMap};
 use crate::regions::{Follow, Guidance, Regions};
 use crate::terms::{accumulate, Structure, Term, TermReport};
@@ -21,17 +23,17 @@ use crate::{DrapeError, DrapeState, Parametrization, Repair, Vertices};
 /// So many times in a run, parts that nothing attracts follow the rest.
 const N_FOLLOWS: usize = 5;
 
-/// What is draped over what.
+/// What is draped over what. A drape keeps what it needs of it: it borrows nothing.
 #[derive(Clone, Copy)]
 pub struct DrapeInput<'a> {
     /// The source's polygons as triangles.
-    pub triangulation: &'a Triangulation,
+    pub triangulation: &'a Arc<Triangulation>,
     /// The source as given: its shape is kept.
-    pub rest: &'a Positions,
+    pub rest: &'a Arc<Positions>,
     /// Where the drape starts, in the target's coordinates.
     pub initial: &'a Positions,
     /// The shape to drape over.
-    pub target: &'a dyn TargetSurface,
+    pub target: &'a Arc<dyn TargetSurface>,
     /// Places that belong together.
     pub landmarks: &'a [Landmark],
 }
@@ -50,34 +52,41 @@ pub struct StepReport {
 }
 
 /// A drape in progress. Dropping it cancels it; between steps it can be read and its landmarks changed.
-pub struct Drape<'a> {
+///
+/// It owns or shares all that it needs, so that a window or another thread can hold it.
+pub struct Drape {
     config: DrapeConfig,
     frame: UnitFrame,
     parametrization: Box<dyn Parametrization>,
     landmarks: Vec<Landmark>,
-    matcher: SurfaceMatcher<'a>,
-    structure: Structure<'a>,
+    matcher: SurfaceMatcher,
+    structure: Structure,
     beyond: Beyond,
     pairing: Pairing,
-    input: DrapeInput<'a>,
+    triangulation: Arc<Triangulation>,
+    rest: Arc<Positions>,
+    /// In the unit frame.
+    initial: Positions,
     is_uncovered: VertexData<bool>,
     guidance: Guidance,
     iteration: usize,
     n_iterations: usize,
     stage_starts: Vec<usize>,
     gradient: VertexData<Vector3>,
-    rng: ChaCha8Rng,
+    rng: SeededRng,
     profile: Profile,
 }
 
-impl<'a> Drape<'a> {
+impl Drape {
     /// A drape at its start: [`Self::positions`] are the initial ones.
     ///
     /// # Errors
-    /// Inputs of different lengths, a mesh without area, a setting out of range.
-    pub fn new(input: DrapeInput<'a>, config: DrapeConfig) -> Result<Self, DrapeError> {
-        check(&input)?;
+    /// Inputs of different lengths or of different meshes, a coordinate that is not finite, a mesh without area, a setting
+    /// out of range or that asks for more memory than there is.
+    pub fn new(input: DrapeInput<'_>, config: DrapeConfig) -> Result<Self, DrapeError> {
+        input.check()?;
         config.check()?;
+        config.check_memory(input.rest.len())?;
         let frame = input.target.principal_frame();
         let initial = input.initial.map(|p| frame.to_unit(p));
         let parametrization: Box<dyn Parametrization> = match &config.parametrization {
@@ -88,13 +97,22 @@ impl<'a> Drape<'a> {
                 Box::new(Vertices::new(input.triangulation, &initial, vertices)?)
             }
         };
-        let mut rng = ChaCha8Rng::seed_from_u64(config.seed);
+        let mut rng = SeededRng::new(config.seed);
         let mut matcher = SurfaceMatcher::new(input.triangulation, &initial, input.target, frame);
         let mut beyond = matcher.beyond(&initial, N_BEYOND, FAR_BEYOND, &mut rng);
         let n_iterations = config.stages.iter().map(|s| s.n_iterations).sum();
         let ends_openly = matcher.has_boundary();
         let pairing = Pairing::new(config.overlap, &beyond, ends_openly, n_iterations);
-        let is_uncovered = lacking(&input, &initial, &frame, config.overlap, &mut beyond);
+        let is_uncovered = lacking(
+            input.triangulation,
+            &initial,
+            Target {
+                surface: input.target.as_ref(),
+                frame: &frame,
+            },
+            config.overlap,
+            &mut beyond,
+        );
         let none = Regions::none(initial.len());
         let guidance = Guidance::new(
             input.triangulation,
@@ -107,18 +125,20 @@ impl<'a> Drape<'a> {
         let mut drape = Self {
             beyond,
             pairing,
-            input,
             is_uncovered,
             guidance,
             frame,
             parametrization,
             landmarks: Vec::new(),
             matcher,
-            structure: Structure::new(&input, &initial, &config),
+            structure: Structure::new(input.triangulation, input.rest, &initial, &config),
+            triangulation: Arc::clone(input.triangulation),
+            rest: Arc::clone(input.rest),
             iteration: 0,
             stage_starts: config.stage_starts(),
             n_iterations,
             gradient: VertexData::new(initial.len(), Vector3::zeros()),
+            initial,
             rng,
             profile: Profile::off(),
             config,
@@ -132,7 +152,7 @@ impl<'a> Drape<'a> {
     /// # Errors
     /// The optimisation left the finite numbers.
     pub fn step(&mut self) -> Result<Option<StepReport>, DrapeError> {
-        if self.iteration >= self.n_iterations {
+        if self.is_finished() {
             return Ok(None);
         }
         let weights = self.config.weights_at(self.iteration);
@@ -146,7 +166,7 @@ impl<'a> Drape<'a> {
         })?;
         if self.stage_starts.contains(&self.iteration) {
             let x = self.parametrization.positions();
-            self.structure.anchor(self.input.triangulation, x);
+            self.structure.anchor(&self.triangulation, x);
         }
 
         let (overlap, mutual) = self.pairing.at(self.iteration, progress);
@@ -193,11 +213,10 @@ impl<'a> Drape<'a> {
     /// Not one entry per vertex, or an attraction outside 0..=1; nothing changed.
     pub fn set_regions(&mut self, regions: &Regions) -> Result<(), DrapeError> {
         regions.check(self.gradient.len())?;
-        let initial = self.input.initial.map(|p| self.frame.to_unit(p));
         self.guidance = Guidance::new(
-            self.input.triangulation,
-            self.input.rest,
-            &initial,
+            &self.triangulation,
+            &self.rest,
+            &self.initial,
             regions,
             &self.is_uncovered,
         );
@@ -208,7 +227,7 @@ impl<'a> Drape<'a> {
     /// Puts bodies and carried pieces where they belong.
     fn settle(&mut self) -> Result<(), DrapeError> {
         let period = (self.n_iterations / N_FOLLOWS).max(1);
-        let is_end = self.iteration >= self.n_iterations;
+        let is_end = self.is_finished();
         let follow = if is_end && self.pairing.overlap.mesh_exceeds {
             Follow::End
         } else if is_end {
@@ -222,7 +241,7 @@ impl<'a> Drape<'a> {
         let x = self.parametrization.positions();
         let correction = self.profile.time("regions", || {
             self.guidance
-                .correction(self.input.triangulation, x, follow, &marked)
+                .correction(&self.triangulation, x, follow, &marked)
         })?;
         if let Some(moves) = correction {
             self.parametrization.displace(&moves);
@@ -241,10 +260,9 @@ impl<'a> Drape<'a> {
         let positions = self.positions();
         if self.config.repair {
             let held: Vec<VertexId> = self.marked().collect();
-            crate::repair(self.input.triangulation, self.input.rest, &positions, &held)
+            crate::repair(&self.triangulation, &self.rest, &positions, &held)
         } else {
-            let defects =
-                crate::repair::defects(self.input.triangulation, self.input.rest, &positions);
+            let defects = crate::repair::defects(&self.triangulation, &self.rest, &positions);
             Repair {
                 positions,
                 left: defects.clone(),
@@ -256,7 +274,7 @@ impl<'a> Drape<'a> {
     /// Replaces the landmarks from the next step on.
     ///
     /// # Errors
-    /// A landmark names a vertex that is not there; the old landmarks stay.
+    /// A landmark names a vertex that is not there, or its place or target is not finite; the old landmarks stay.
     pub fn set_landmarks(&mut self, landmarks: &[Landmark]) -> Result<(), DrapeError> {
         let n_vertices = self.gradient.len();
         for (row, landmark) in landmarks.iter().enumerate() {
@@ -271,6 +289,14 @@ impl<'a> Drape<'a> {
                     vertex: v.index(),
                     n_vertices,
                 });
+            }
+            let numbers = landmark
+                .source
+                .weights
+                .iter()
+                .chain(&landmark.target.coords);
+            if numbers.into_iter().any(|x| !x.is_finite()) {
+                return Err(DrapeError::LandmarkNotFinite { landmark: row });
             }
         }
         self.landmarks = landmarks.to_vec();
@@ -294,23 +320,19 @@ impl<'a> Drape<'a> {
                 expected: self.gradient.len(),
             });
         }
-        let is_finite = |d: &Vector3| d.iter().all(|c| c.is_finite());
-        if !displacements.iter().all(is_finite) {
-            return Err(DrapeError::Diverged {
-                iteration: self.iteration,
-            });
-        }
+        check_finite("the displacement", displacements.iter())?;
         let scale = self.frame.scale;
         self.parametrization
             .displace(&displacements.map(|d| d / scale));
         let x = self.parametrization.positions();
-        self.structure.anchor(self.input.triangulation, x);
+        self.structure.anchor(&self.triangulation, x);
         Ok(())
     }
 
     /// Adds iterations to the run, with the weights that it would have ended with; vertices stay anchored where they
-    /// were.
+    /// were. A run has at most 10⁹ iterations.
     pub fn extend(&mut self, n_iterations: usize) {
+        let n_iterations = n_iterations.min(MAX_ITERATIONS.saturating_sub(self.n_iterations));
         if let Some(&Stage { to, .. }) = self.config.stages.last() {
             self.config.stages.push(Stage {
                 n_iterations,
@@ -326,7 +348,7 @@ impl<'a> Drape<'a> {
         DrapeState::write(|state| {
             state.count(self.iteration);
             state.count(self.n_iterations);
-            state.word_position(self.rng.get_word_pos());
+            state.word_position(self.rng.word_position());
             let hard = self.matcher.hard_corners();
             state.counts(&hard.of_mesh);
             state.counts(&hard.of_target);
@@ -343,12 +365,13 @@ impl<'a> Drape<'a> {
     pub fn restore(&mut self, state: &DrapeState) -> Result<(), DrapeError> {
         let mut reader = state.reader();
         let (iteration, n_iterations) = (reader.count()?, reader.count()?);
-        if iteration > n_iterations || n_iterations < self.n_iterations {
+        let possible = self.n_iterations..=MAX_ITERATIONS;
+        if iteration > n_iterations || !possible.contains(&n_iterations) {
             return Err(DrapeError::ForeignState);
         }
         self.extend(n_iterations - self.n_iterations);
         self.iteration = iteration;
-        self.rng.set_word_pos(reader.word_position()?);
+        self.rng.set_word_position(reader.word_position()?);
         let hard = HardCorners {
             of_mesh: reader.counts()?,
             of_target: reader.counts()?,
@@ -358,7 +381,7 @@ impl<'a> Drape<'a> {
         }
         let mut anchor = self.structure.anchored_at().clone();
         reader.points(anchor.iter_mut())?;
-        self.structure.anchor(self.input.triangulation, &anchor);
+        self.structure.anchor(&self.triangulation, &anchor);
         self.guidance.restore(&mut reader)?;
         self.parametrization.restore(&mut reader)?;
         reader.finish()
@@ -385,6 +408,11 @@ impl<'a> Drape<'a> {
     /// How many iterations are done.
     pub fn iteration(&self) -> usize {
         self.iteration
+    }
+
+    /// Whether the run is over: [`Self::step`] does nothing until it is extended.
+    pub fn is_finished(&self) -> bool {
+        self.iteration >= self.n_iterations
     }
 
     /// How many iterations the run has.
@@ -444,21 +472,43 @@ impl<'a> Drape<'a> {
     }
 }
 
-fn check(input: &DrapeInput<'_>) -> Result<(), DrapeError> {
-    let expected = input.rest.len();
-    if input.initial.len() != expected {
-        return Err(DrapeError::LengthMismatch {
-            what: "the initial shape",
-            found: input.initial.len(),
-            expected,
-        });
+impl DrapeInput<'_> {
+    /// All belongs together, is finite, and has an area.
+    fn check(&self) -> Result<(), DrapeError> {
+        let expected = self.rest.len();
+        if self.initial.len() != expected {
+            return Err(DrapeError::LengthMismatch {
+                what: "the initial shape",
+                found: self.initial.len(),
+                expected,
+            });
+        }
+        let corners = self.triangulation.triangles().iter().flatten();
+        let n_named = corners.map(|v| v.index() + 1).max().unwrap_or(0);
+        if n_named > expected {
+            return Err(DrapeError::ForeignTriangulation {
+                n_named,
+                n_vertices: expected,
+            });
+        }
+        check_finite("the rest shape", self.rest.iter().map(|p| &p.coords))?;
+        check_finite("the initial shape", self.initial.iter().map(|p| &p.coords))?;
+        let areas = mesh_core::measure::triangle_areas(self.triangulation, self.rest);
+        if areas.iter().sum::<f64>() > 0.0 {
+            Ok(())
+        } else {
+            Err(DrapeError::NoArea)
+        }
     }
-    let area: f64 = mesh_core::measure::triangle_areas(input.triangulation, input.rest)
-        .iter()
-        .sum();
-    if area > 0.0 {
-        Ok(())
-    } else {
-        Err(DrapeError::NoArea)
+}
+
+/// Every entry is finite.
+fn check_finite<'v>(
+    what: &'static str,
+    mut entries: impl Iterator<Item = &'v Vector3>,
+) -> Result<(), DrapeError> {
+    match entries.position(|v| !v.iter().all(|c| c.is_finite())) {
+        Some(vertex) => Err(DrapeError::VertexNotFinite { what, vertex }),
+        None => Ok(()),
     }
 }

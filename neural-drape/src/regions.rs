@@ -50,7 +50,7 @@ impl Regions {
         }
         match self.attraction.iter().find(|a| !(0.0..=1.0).contains(*a)) {
             Some(&value) => Err(DrapeError::Setting {
-                name: "attraction",
+                name: "attraction".to_owned(),
                 value,
                 expected: "between 0 and 1",
             }),

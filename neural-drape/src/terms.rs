@@ -1,12 +1,13 @@
 //! The terms of the loss: those of the mesh alone, and how any is added and reported.
 
+use std::sync::Arc;
+
 use mesh_core::{Positions, Profile, Triangulation, Vector3, VertexData};
 use mesh_loss::{
     AreaKl, Conformal, CornerAngle, Drift, Flip, FoldBarrier, LocalShape, Loss, TriangleQuality,
 };
 
 use crate::config::{AngleReference, DrapeConfig, Weights};
-use crate::DrapeInput;
 
 /// One term of the loss in one iteration.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -41,35 +42,36 @@ pub(crate) fn accumulate(
 }
 
 /// The terms that depend on the mesh alone.
-pub(crate) struct Structure<'a> {
-    corner_angle: CornerAngle<'a>,
-    area_kl: AreaKl<'a>,
-    triangle_quality: TriangleQuality<'a>,
-    flip: Flip<'a>,
-    fold_barrier: FoldBarrier<'a>,
-    conformal: Conformal<'a>,
+pub(crate) struct Structure {
+    corner_angle: CornerAngle,
+    area_kl: AreaKl,
+    triangle_quality: TriangleQuality,
+    flip: Flip,
+    fold_barrier: FoldBarrier,
+    conformal: Conformal,
     local_shape: LocalShape,
     drift: Drift,
 }
 
-impl<'a> Structure<'a> {
-    pub(crate) fn new(input: &DrapeInput<'a>, initial: &Positions, config: &DrapeConfig) -> Self {
-        let t = input.triangulation;
+impl Structure {
+    pub(crate) fn new(
+        t: &Arc<Triangulation>,
+        rest: &Positions,
+        initial: &Positions,
+        config: &DrapeConfig,
+    ) -> Self {
         let angles = match config.angle_reference {
-            AngleReference::Rest => input.rest,
+            AngleReference::Rest => rest,
             AngleReference::Initial => initial,
         };
         Self {
             corner_angle: CornerAngle::new(t, angles),
-            area_kl: AreaKl::new(t, input.rest),
-            triangle_quality: TriangleQuality {
-                triangulation: t,
-                threshold: config.skinny_threshold,
-            },
+            area_kl: AreaKl::new(t, rest),
+            triangle_quality: TriangleQuality::new(t, config.skinny_threshold),
             flip: Flip::new(t, initial),
-            fold_barrier: FoldBarrier::new(t, input.rest, config.fold_limit),
-            conformal: Conformal::new(t, input.rest),
-            local_shape: LocalShape::new(t, input.rest),
+            fold_barrier: FoldBarrier::new(t, rest, config.fold_limit),
+            conformal: Conformal::new(t, rest),
+            local_shape: LocalShape::new(t, rest),
             drift: Drift::new(t, initial),
         }
     }

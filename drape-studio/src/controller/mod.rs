@@ -142,10 +142,9 @@ impl Controller {
         let preset = Preset::from_toml(&parts.session.document.settings)?;
         let mut controller = Self {
             figures: Arc::new(judge(Arc::clone(&parts.broadcast))),
-            preview: preview(
-                Arc::clone(&parts.broadcast),
-                move |number, found| drop(previewed.send(Inbox::Previewed(number, found))),
-            ),
+            preview: preview(Arc::clone(&parts.broadcast), move |number, found| {
+                drop(previewed.send(Inbox::Previewed(number, found)))
+            }),
             live: live_preview(Arc::clone(&parts.broadcast)),
             inbox: inbox.clone(),
             broadcast: parts.broadcast,

@@ -34,7 +34,9 @@ impl Controller {
                 }
                 let (_, bvh) = self.shown_bvh.as_ref()?;
                 let location = first_hit(bvh, &displayed.target.frame, ray)?;
-                Some(Place::Source(SourcePlace::of(&source.source.place(location)?)))
+                Some(Place::Source(SourcePlace::of(
+                    &source.source.place(location)?,
+                )))
             }
         }
     }

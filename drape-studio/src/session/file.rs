@@ -157,6 +157,7 @@ mod tests {
             free: vec!["bag".to_owned()],
             rigid: Vec::new(),
             draped: vec!["hidden:2".to_owned()],
+            ..Parts::default()
         };
         session.edit(|d| {
             d.marks.push(mark.clone());

@@ -138,7 +138,11 @@ mod tests {
     #[test]
     fn the_form_of_lists_takes_names_of_the_same_count() {
         let text = r#"{"source_vertices": [0, 8], "target_points": [[0,0,0],[1,1,1]], "source": "by hand"}"#;
-        let name = |names| parse(text, Some(names), &source(), &[]).unwrap()[1].name.clone();
+        let name = |names| {
+            parse(text, Some(names), &source(), &[]).unwrap()[1]
+                .name
+                .clone()
+        };
         assert_eq!(name("a\nb\n").as_deref(), Some("b"));
         assert_eq!(name("a\nb\nc\n"), None);
     }

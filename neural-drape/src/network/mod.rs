@@ -18,6 +18,7 @@ use mesh_core::{Aabb, Positions, UnitFrame, Vector3, VertexData};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
+use crate::check::Setting;
 use crate::{DrapeError, Parametrization, StateReader, StateWriter};
 pub(crate) use encoding::{WaveKind, Waves};
 pub(crate) use map::Layer;
@@ -54,7 +55,7 @@ impl Network {
     /// If there is no position.
     pub fn new(initial: &Positions, config: &NetworkConfig, seed: u64) -> Result<Self, DrapeError> {
         assert!(!initial.is_empty(), "a network needs a vertex to move");
-        config.check()?;
+        Setting::check(config.settings())?;
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
         let waves = Waves::draw(&config.encoding, &mut rng);
         let is_trainable = config.encoding.is_trainable();
@@ -123,9 +124,11 @@ impl Parametrization for Network {
         gradient: &VertexData<Vector3>,
         learning_rate: f64,
     ) -> Result<(), DrapeError> {
-        let mut gradients = self.gradients(gradient)?;
-        self.adam
-            .step(&mut self.parameters, &mut gradients, learning_rate)?;
+        let stepped = self.gradients(gradient).and_then(|mut gradients| {
+            self.adam
+                .step(&mut self.parameters, &mut gradients, learning_rate)
+        });
+        stepped.map_err(|_| DrapeError::OutOfMemory)?;
         self.evaluate();
         Ok(())
     }

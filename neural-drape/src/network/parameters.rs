@@ -242,7 +242,8 @@ impl Adam {
         self.n_steps = state.count()?.try_into().unwrap_or(i32::MAX);
         for parameter in parameters.tensors_mut() {
             for moment in [&mut self.moment1, &mut self.moment2] {
-                state.singles(moment.get_or_alloc_mut(parameter)?.iter_mut())?;
+                let entries = moment.get_or_alloc_mut(parameter);
+                state.singles(entries.map_err(|_| DrapeError::OutOfMemory)?.iter_mut())?;
             }
         }
         Ok(())

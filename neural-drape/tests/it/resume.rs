@@ -5,19 +5,19 @@ use neural_drape::{Drape, DrapeConfig, DrapeError, DrapeState};
 
 use crate::setup::{short, Pair};
 
-fn steps(drape: &mut Drape<'_>, n: usize) {
+fn steps(drape: &mut Drape, n: usize) {
     for _ in 0..n {
         drape.step().expect("a step");
     }
 }
 
-fn end(mut drape: Drape<'_>) -> Positions {
+fn end(mut drape: Drape) -> Positions {
     while drape.step().expect("a step").is_some() {}
     drape.positions()
 }
 
 /// A ball with a landmark that is added, and iterations too.
-fn changed_on_the_way(drape: &mut Drape<'_>, pair: &Pair) {
+fn changed_on_the_way(drape: &mut Drape, pair: &Pair) {
     let v = VertexId::new(3);
     drape
         .set_landmarks(&[Landmark::new(v, crate::setup::on_ellipsoid(&pair.rest[v]))])

@@ -1,6 +1,8 @@
 //! A run improves the fit, repeats to the bit, and starts where it should.
 
-use mesh_core::{shapes, Point3, Positions, TargetSurface, TriangleSoup, Vector3};
+use std::sync::Arc;
+
+use mesh_core::{shapes, Point3, Positions, TriangleSoup, Vector3};
 use neural_drape::{Drape, DrapeConfig};
 
 use crate::setup::{on_ellipsoid, run, short, Pair};
@@ -91,7 +93,7 @@ fn units_place_and_turn_of_the_target_do_not_matter() {
     for p in &mut ellipsoid.positions {
         *p = away(&on_ellipsoid(p));
     }
-    far.target = TriangleSoup::new(ellipsoid).unwrap();
+    far.target = Arc::new(TriangleSoup::new(ellipsoid).unwrap());
     far.initial = near.initial.map(away);
     let (there, _) = run(far.input(), short("standard", 60)).unwrap();
 

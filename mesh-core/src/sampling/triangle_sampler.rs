@@ -1,6 +1,6 @@
 //! Even random places on triangles.
 
-use rand::{Rng, RngCore};
+use super::SeededRng;
 
 /// A triangle's row and the weights of its corners, each ≥ 0, summing to 1.
 pub type TrianglePlace = (usize, [f64; 3]);
@@ -14,10 +14,9 @@ pub type TrianglePlace = (usize, [f64; 3]);
 /// Source: Roberts 2018, "The unreasonable effectiveness of quasirandom sequences" (R₂).
 ///
 /// ```
-/// use mesh_core::sampling::TriangleSampler;
-/// use rand::SeedableRng;
+/// use mesh_core::sampling::{SeededRng, TriangleSampler};
 /// let sampler = TriangleSampler::new([1.0, 3.0]);
-/// let places = sampler.sample(400, &mut rand_chacha::ChaCha8Rng::seed_from_u64(0));
+/// let places = sampler.sample(400, &mut SeededRng::new(0));
 /// assert_eq!(places.iter().filter(|(triangle, _)| *triangle == 0).count(), 100);
 /// ```
 #[derive(Clone, Debug)]
@@ -49,7 +48,7 @@ impl TriangleSampler {
     }
 
     /// `n` places, in the order of the triangles; none where there is no triangle.
-    pub fn sample(&self, n: usize, rng: &mut dyn RngCore) -> Vec<TrianglePlace> {
+    pub fn sample(&self, n: usize, rng: &mut SeededRng) -> Vec<TrianglePlace> {
         let Some((&total, last)) = self
             .cumulative
             .last()
@@ -57,11 +56,11 @@ impl TriangleSampler {
         else {
             return Vec::new();
         };
-        let mut point = [rng.random::<f64>(), rng.random::<f64>()];
+        let mut point = [rng.uniform(), rng.uniform()];
         let mut triangle = 0;
         (0..n)
             .map(|k| {
-                let at = total * (k as f64 + rng.random::<f64>()) / n as f64;
+                let at = total * (k as f64 + rng.uniform()) / n as f64;
                 triangle = self.first_beyond(at, triangle).min(last);
                 point = [0, 1].map(|i| wrapped(point[i] + R2[i]));
                 (triangle, uniform_weights(point[0], point[1]))
@@ -102,20 +101,17 @@ fn uniform_weights(r: f64, s: f64) -> [f64; 3] {
 
 #[cfg(test)]
 mod tests {
-    use rand::SeedableRng;
-    use rand_chacha::ChaCha8Rng;
-
     use super::*;
 
     #[test]
     fn no_triangle_gives_no_place() {
-        let mut rng = ChaCha8Rng::seed_from_u64(0);
+        let mut rng = SeededRng::new(0);
         assert!(TriangleSampler::new([]).sample(5, &mut rng).is_empty());
     }
 
     #[test]
     fn without_weight_all_count_the_same() {
-        let mut rng = ChaCha8Rng::seed_from_u64(0);
+        let mut rng = SeededRng::new(0);
         let rows: Vec<usize> = TriangleSampler::new([0.0; 4])
             .sample(8, &mut rng)
             .iter()
@@ -126,7 +122,7 @@ mod tests {
 
     #[test]
     fn the_mean_place_is_the_centroid() {
-        let mut rng = ChaCha8Rng::seed_from_u64(7);
+        let mut rng = SeededRng::new(7);
         let places = TriangleSampler::new([1.0]).sample(3000, &mut rng);
         for k in 0..3 {
             let mean = places.iter().map(|(_, w)| w[k]).sum::<f64>() / 3000.0;
