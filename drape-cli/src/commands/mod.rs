@@ -9,6 +9,8 @@ mod inspect;
 mod landmarks;
 mod metrics;
 mod presets;
+mod replay;
+mod studio;
 mod transfer;
 
 use std::process::ExitCode;
@@ -36,6 +38,10 @@ pub(crate) enum Command {
     Batch(batch::Args),
     /// Run and judge many pairs with many presets and seeds
     Evaluate(evaluate::Args),
+    /// Mark, preview, drape, pause and add places in the browser
+    Studio(studio::Args),
+    /// Do a session of the studio again, to the same bits
+    Replay(replay::Args),
     /// See a drape without any file of your own
     Demo(demo::Args),
 }
@@ -52,6 +58,8 @@ impl Command {
             Self::Presets(args) => presets::run(args),
             Self::Batch(args) => batch::run(args),
             Self::Evaluate(args) => evaluate::run(args),
+            Self::Studio(args) => studio::run(args),
+            Self::Replay(args) => replay::run(args),
             Self::Demo(args) => demo::run(args),
         }
     }
