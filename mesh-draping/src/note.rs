@@ -2,8 +2,6 @@
 
 use std::fmt;
 
-use mesh_core::VertexId;
-
 /// Which of the two shapes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Shape {
@@ -106,15 +104,6 @@ pub enum Note {
         /// The corners of the triangle: rows of the source's file.
         rows: [usize; 3],
     },
-}
-
-impl Note {
-    /// What the last stage could not take out, by rows of the source's file.
-    pub(crate) fn fold_left(edge: [VertexId; 2], row: impl Fn(VertexId) -> usize) -> Self {
-        Self::FoldLeft {
-            rows: edge.map(row),
-        }
-    }
 }
 
 impl fmt::Display for Note {

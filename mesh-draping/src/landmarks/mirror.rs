@@ -1,11 +1,11 @@
 //! Landmarks of the other half of a symmetric source.
 
-use mesh_core::{Landmark, MeshPoint, Point3, Positions, TriangleBvh, Vector3};
+use mesh_core::{Aabb, Landmark, MeshPoint, Point3, Vector3};
 use mesh_init::point_pairs;
 use nalgebra::{Matrix3, SymmetricEigen};
 
 use super::Label;
-use crate::{Pair, Similarity};
+use crate::{Pair, Similarity, Source, Target};
 
 /// A source whose mirror image is farther from it, on the mean and in longest sides of its box, is not symmetric.
 const SYMMETRIC: f64 = 0.01;
@@ -25,6 +25,26 @@ pub struct Plane {
     pub normal: Vector3,
     /// A point of it.
     pub point: Point3,
+}
+
+/// The planes across which a source and its target are mirrored.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MirrorPlanes {
+    /// That of the source, in its coordinates.
+    pub source: Plane,
+    /// That of the target, in its coordinates.
+    pub target: Plane,
+}
+
+/// How symmetric a shape is: the best of the planes through the middle of its box across an axis.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Symmetry {
+    /// The axis across which the plane lies: 0, 1 or 2.
+    pub axis: usize,
+    /// The plane.
+    pub plane: Plane,
+    /// Mean distance of the mirror image from the shape, in longest sides of its box.
+    pub misfit: f64,
 }
 
 /// Landmarks of the other half.
@@ -52,7 +72,21 @@ pub enum MirrorError {
 }
 
 impl Plane {
-    fn mirror(&self, p: &Point3) -> Point3 {
+    /// The plane through the middle of a box, across an axis.
+    ///
+    /// # Panics
+    /// If `axis` is not 0, 1 or 2.
+    pub fn through_middle(bounds: &Aabb, axis: usize) -> Self {
+        let mut normal = Vector3::zeros();
+        normal[axis] = 1.0;
+        Self {
+            normal,
+            point: nalgebra::center(&bounds.min, &bounds.max),
+        }
+    }
+
+    /// The mirror image of a point.
+    pub fn mirror(&self, p: &Point3) -> Point3 {
         p - self.normal * (2.0 * self.normal.dot(&(p - self.point)))
     }
 }
@@ -69,34 +103,68 @@ pub fn mirror(pair: &Pair) -> Result<Mirrored, MirrorError> {
         return Err(MirrorError::TooFew);
     }
     let rest = pair.source.rest();
-    let (plane, misfit) = symmetry_plane(rest, pair.source.bvh());
+    let Symmetry { plane, misfit, .. } = source_symmetry(&pair.source);
     if misfit > SYMMETRIC {
         return Err(MirrorError::NotSymmetric { misfit });
     }
     let side = pair.source.bounds().longest_side();
-    let target_plane = target_plane(pair, &plane, SAME * side);
+    let planes = MirrorPlanes {
+        target: target_plane(pair, &plane, SAME * side),
+        source: plane,
+    };
     let mut added: Vec<Landmark> = Vec::new();
     for (k, l) in pair.landmarks.iter().enumerate() {
-        let at = plane.mirror(&l.source.position(rest));
+        let at = planes.source.mirror(&l.source.position(rest));
         let is_marked = |other: &Landmark| (other.source.position(rest) - at).norm() < SAME * side;
         if pair.landmarks.iter().chain(&added).any(is_marked) {
             continue;
         }
-        let Some(source) = place(pair, &at) else {
-            continue;
-        };
-        let target = target_plane.mirror(&l.target);
-        added.push(Landmark {
-            name: Some(match &l.name {
-                Some(name) => other_side(name),
-                None => format!("mirror of {}", Label::new(k, None)),
-            }),
-            source,
-            target: pair.target.judged().closest_point(&target).point,
-            kind: l.kind,
-        });
+        let unnamed = || Some(format!("mirror of {}", Label::new(k, None)));
+        added.extend(counterpart(pair, l, &planes).map(|twin| Landmark {
+            name: twin.name.or_else(unnamed),
+            ..twin
+        }));
     }
-    Ok(Mirrored { added, plane })
+    Ok(Mirrored {
+        added,
+        plane: planes.source,
+    })
+}
+
+/// The landmark of the other half: the mirror image on the source, and the place of the target's surface nearest to the
+/// mirror image there. None for a landmark that lies on the source's plane.
+///
+/// ```
+/// use mesh_core::{shapes, Landmark, VertexId};
+/// use mesh_draping::landmarks::{counterpart, MirrorPlanes, Plane};
+/// use mesh_draping::{Pair, Seams, Source, Target};
+/// let soup = shapes::quad_sphere(4);
+/// let pair = Pair {
+///     source: Source::of_soup(soup.clone(), Seams::EXACT)?,
+///     target: Target::of_soup(soup.clone())?,
+///     landmarks: Vec::new(),
+/// };
+/// let plane = Plane::through_middle(&pair.source.bounds(), 0);
+/// let planes = MirrorPlanes { source: plane.clone(), target: plane };
+/// let left = Landmark { name: Some("left ear".to_owned()), ..Landmark::new(VertexId::new(0), soup.positions[0]) };
+/// let right = counterpart(&pair, &left, &planes).expect("a corner is not on the plane");
+/// assert_eq!(right.name.as_deref(), Some("right ear"));
+/// assert!((right.target.x + left.target.x).abs() < 1e-12);
+/// # Ok::<(), mesh_draping::Error>(())
+/// ```
+pub fn counterpart(pair: &Pair, landmark: &Landmark, planes: &MirrorPlanes) -> Option<Landmark> {
+    let at = landmark.source.position(pair.source.rest());
+    let image = planes.source.mirror(&at);
+    if (image - at).norm() < SAME * pair.source.bounds().longest_side() {
+        return None;
+    }
+    let target = planes.target.mirror(&landmark.target);
+    Some(Landmark {
+        name: landmark.name.as_deref().map(other_side),
+        source: place(pair, &image)?,
+        target: pair.target.judged().closest_point(&target).point,
+        kind: landmark.kind,
+    })
 }
 
 /// The plane of the target: that of the landmarks on the source's plane where they span one, else the source's plane
@@ -145,28 +213,40 @@ fn place(pair: &Pair, at: &Point3) -> Option<MeshPoint> {
     Some(place)
 }
 
-/// The best of the planes through the middle of the box across an axis, and the mean distance of the mirror image from
-/// the shape, in longest sides of its box.
-fn symmetry_plane(rest: &Positions, bvh: &TriangleBvh) -> (Plane, f64) {
-    let bounds = bvh.bounds();
-    let middle = nalgebra::center(&bounds.min, &bounds.max);
-    let step = rest.len().div_ceil(N_PROBES).max(1);
-    let [a, b, c] = [Vector3::x(), Vector3::y(), Vector3::z()].map(|normal| {
-        let plane = Plane {
-            normal,
-            point: middle,
-        };
-        let mirrored: Vec<Point3> = rest.iter().step_by(step).map(|p| plane.mirror(p)).collect();
-        let sum: f64 = bvh
-            .closest_points(&mirrored)
-            .iter()
-            .map(|c| c.distance_squared.sqrt())
-            .sum();
-        let misfit = sum / mirrored.len().max(1) as f64 / bounds.longest_side();
-        (plane, misfit)
-    });
-    let better = |a: (Plane, f64), b: (Plane, f64)| if b.1 < a.1 { b } else { a };
-    better(better(a, b), c)
+/// How symmetric a source is.
+pub fn source_symmetry(source: &Source) -> Symmetry {
+    let bvh = source.bvh();
+    symmetry(source.rest().as_slice(), &bvh.bounds(), |images| {
+        let closest = bvh.closest_points(images);
+        closest.iter().map(|c| c.distance_squared.sqrt()).sum()
+    })
+}
+
+/// How symmetric a target is.
+pub fn target_symmetry(target: &Target) -> Symmetry {
+    let judged = target.judged();
+    symmetry(&judged.vertices(), &judged.bounds(), |images| {
+        let closest = judged.closest_points(images);
+        closest.iter().map(|c| c.distance_squared.sqrt()).sum()
+    })
+}
+
+/// The best of the planes through the middle of the box across an axis. `sum` adds up the distances of points from the
+/// shape.
+fn symmetry(points: &[Point3], bounds: &Aabb, sum: impl Fn(&[Point3]) -> f64) -> Symmetry {
+    let step = points.len().div_ceil(N_PROBES).max(1);
+    let across = |axis: usize| {
+        let plane = Plane::through_middle(bounds, axis);
+        let images = points.iter().step_by(step).map(|p| plane.mirror(p));
+        let images: Vec<Point3> = images.collect();
+        Symmetry {
+            misfit: sum(&images) / images.len().max(1) as f64 / bounds.longest_side(),
+            axis,
+            plane,
+        }
+    };
+    let better = |a: Symmetry, b: Symmetry| if b.misfit < a.misfit { b } else { a };
+    better(better(across(0), across(1)), across(2))
 }
 
 /// `left ear` for `right ear`, `ear_L` for `ear_R`.
@@ -205,7 +285,7 @@ fn other_side(name: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Seams, Source};
+    use crate::Seams;
 
     #[test]
     fn names_change_sides() {
@@ -223,8 +303,48 @@ mod tests {
             *p = Point3::new(p.x * (1.5 + 0.5 * p.y), p.y, p.z * (1.0 + 0.3 * p.x) + 4.0);
         }
         let source = Source::of_soup(soup, Seams::EXACT).unwrap();
-        let (plane, misfit) = symmetry_plane(source.rest(), source.bvh());
-        assert_eq!(plane.normal, Vector3::z());
+        let Symmetry {
+            axis,
+            plane,
+            misfit,
+        } = source_symmetry(&source);
+        assert_eq!((axis, plane.normal), (2, Vector3::z()));
         assert!(misfit < 1e-9 && (plane.point.z - 4.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn a_target_is_as_symmetric_as_a_source_of_its_shape() {
+        let mut soup = mesh_core::shapes::icosphere(2);
+        for p in &mut soup.positions {
+            *p = Point3::new(p.x * (1.5 + 0.5 * p.y), p.y * (1.0 + 0.2 * p.z), p.z);
+        }
+        let source = source_symmetry(&Source::of_soup(soup.clone(), Seams::EXACT).unwrap());
+        let target = target_symmetry(&Target::of_soup(soup).unwrap());
+        assert_eq!((source.axis, target.axis), (0, 0));
+        assert!((source.misfit - target.misfit).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_landmark_on_the_plane_has_no_counterpart() {
+        let soup = mesh_core::shapes::icosphere(2);
+        let pair = Pair {
+            source: Source::of_soup(soup.clone(), Seams::EXACT).unwrap(),
+            target: Target::of_soup(soup).unwrap(),
+            landmarks: Vec::new(),
+        };
+        let plane = Plane::through_middle(&pair.source.bounds(), 0);
+        let planes = MirrorPlanes {
+            source: plane.clone(),
+            target: plane,
+        };
+        for (x, is_mirrored) in [(0.004, false), (0.5, true)] {
+            let point = Point3::new(x, 0.5, 0.5);
+            let landmark = Landmark {
+                source: pair.source.closest_place(&point).unwrap(),
+                ..Landmark::new(mesh_core::VertexId::new(0), point)
+            };
+            let twin = counterpart(&pair, &landmark, &planes);
+            assert_eq!(twin.is_some(), is_mirrored, "{x}");
+        }
     }
 }

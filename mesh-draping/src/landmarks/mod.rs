@@ -5,7 +5,8 @@
 //! | read a landmark file of any form | [`read`], [`parse`] |
 //! | write one | [`write()`] |
 //! | find what is probably wrong | [`Pair::findings`](crate::Pair::findings), [`leave_one_out_residuals`] |
-//! | mark the other half of a symmetric source | [`mirror()`] |
+//! | mark the other half of a symmetric source | [`mirror()`]; for one landmark, [`counterpart()`] |
+//! | find how symmetric a shape is | [`source_symmetry()`], [`target_symmetry()`] |
 //! | find where one more would help most | [`suggest()`] |
 
 mod doctor;
@@ -23,7 +24,10 @@ pub use doctor::leave_one_out_residuals;
 pub use error::{LandmarkError, LandmarkPlace, LandmarkProblem};
 pub use finding::{Finding, Shared};
 pub use label::Label;
-pub use mirror::{mirror, MirrorError, Mirrored, Plane};
+pub use mirror::{
+    counterpart, mirror, source_symmetry, target_symmetry, MirrorError, MirrorPlanes, Mirrored,
+    Plane, Symmetry,
+};
 pub use suggest::{suggest, Suggestion};
 pub use write::{write, Form, WrittenLandmarks};
 

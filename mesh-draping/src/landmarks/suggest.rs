@@ -9,6 +9,7 @@ use crate::{Error, Pair};
 /// A place to mark next.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Suggestion {
+    /// On the source.
     pub vertex: VertexId,
     /// The place of the target nearest to where the landmarks so far bring the vertex: a first guess.
     pub target: Point3,

@@ -277,8 +277,8 @@ impl Page {
     }
 
     /// Drops a file from the desktop at a place.
-    pub(crate) fn drop_file(&self, [x, y]: [f64; 2], file: &Path) {
-        let data = json!({ "items": [], "files": [file], "dragOperationsMask": 1 });
+    pub(crate) fn drop_files(&self, [x, y]: [f64; 2], files: &[PathBuf]) {
+        let data = json!({ "items": [], "files": files, "dragOperationsMask": 1 });
         for kind in ["dragEnter", "dragOver", "drop"] {
             let event = json!({ "type": kind, "x": x, "y": y, "data": data });
             self.call("Input.dispatchDragEvent", event);

@@ -8,15 +8,15 @@ use mesh_core::{Point3, PolygonSoup, Positions, UnitFrame, Vector3};
 
 /// The buffers of one shape.
 #[derive(Clone, Debug)]
-pub(crate) struct Display {
+pub(crate) struct DisplayBuffers {
     pub(crate) bytes: Bytes,
     pub(crate) n_vertices: usize,
     pub(crate) n_faces: usize,
 }
 
-impl Display {
+impl DisplayBuffers {
     /// Triangles to shade, and the sides of the polygons as lines.
-    pub(crate) fn mesh(frame: &UnitFrame, soup: &PolygonSoup, triangles: Vec<[u32; 3]>) -> Self {
+    pub(crate) fn of_mesh(frame: &UnitFrame, soup: &PolygonSoup, triangles: Vec<[u32; 3]>) -> Self {
         let edges = edges(&soup.faces);
         let mut bytes = header(soup.positions.len(), triangles.len(), edges.len(), 0);
         put_points(&mut bytes, frame, &soup.positions);
@@ -30,7 +30,7 @@ impl Display {
     }
 
     /// Points with normals.
-    pub(crate) fn cloud(frame: &UnitFrame, points: &[Point3], normals: &[Vector3]) -> Self {
+    pub(crate) fn of_cloud(frame: &UnitFrame, points: &[Point3], normals: &[Vector3]) -> Self {
         let mut bytes = header(points.len(), 0, 0, 1);
         put_points(&mut bytes, frame, points);
         for n in normals {

@@ -9,16 +9,16 @@ use neural_drape::StepReport;
 use serde::{Deserialize, Serialize};
 use tokio::sync::watch;
 
-use crate::display::position_bytes;
+use crate::buffers::position_bytes;
+use crate::displayed::DisplayedPair;
 use crate::session::RunLog;
-use crate::Scene;
 
 /// Points that a curve is sent with at most.
 const MAX_CURVE: usize = 600;
 
 /// What a shape in the result's view is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum FrameKind {
+pub(crate) enum ShownKind {
     /// The source brought to its landmarks.
     Initial = 0,
     /// The drape, as far as it is.
@@ -28,43 +28,43 @@ pub(crate) enum FrameKind {
 }
 
 /// A shape of the source.
-pub(crate) struct Frame {
+pub(crate) struct ShownShape {
     pub(crate) serial: u32,
-    pub(crate) kind: FrameKind,
+    pub(crate) kind: ShownKind,
     pub(crate) positions: Arc<Positions>,
     /// How a drape came to it; none for other shapes.
-    pub(crate) made: Option<Made>,
+    pub(crate) provenance: Option<Provenance>,
     /// The message that carries it: four u32 (1, serial, kind, iteration), then f32 positions.
     pub(crate) message: Bytes,
 }
 
 /// How a drape came to a shape.
-pub(crate) struct Made {
+pub(crate) struct Provenance {
     pub(crate) log: RunLog,
     pub(crate) network: Option<NetworkMap>,
 }
 
-impl Frame {
+impl ShownShape {
     /// How many iterations led to it.
     pub(crate) fn iteration(&self) -> usize {
-        self.made.as_ref().map_or(0, |made| made.log.iteration)
+        self.provenance.as_ref().map_or(0, |p| p.log.iteration)
     }
 }
 
 /// The newest of everything.
-pub(crate) struct Hub {
+pub(crate) struct Broadcast {
     pub(crate) state: watch::Sender<Arc<str>>,
     pub(crate) progress: watch::Sender<Arc<str>>,
     pub(crate) figures: watch::Sender<Arc<str>>,
-    pub(crate) frame: watch::Sender<Option<Arc<Frame>>>,
+    pub(crate) shown: watch::Sender<Option<Arc<ShownShape>>>,
     shared: Mutex<Shared>,
 }
 
 #[derive(Default)]
 struct Shared {
-    scene: Option<Scene>,
+    displayed: Option<DisplayedPair>,
     serial: u32,
-    draped: Option<Arc<Frame>>,
+    draped: Option<Arc<ShownShape>>,
     curves: Vec<Curve>,
 }
 
@@ -75,14 +75,14 @@ pub(crate) struct Curve {
     pub(crate) points: Vec<(usize, f64)>,
 }
 
-impl Hub {
+impl Broadcast {
     pub(crate) fn new() -> Self {
         let empty = || watch::Sender::new(Arc::from(""));
         Self {
             state: empty(),
             progress: empty(),
             figures: empty(),
-            frame: watch::Sender::new(None),
+            shown: watch::Sender::new(None),
             shared: Mutex::new(Shared::default()),
         }
     }
@@ -91,72 +91,83 @@ impl Hub {
         self.shared.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// What is shown belongs to this scene from now on.
-    pub(crate) fn set_scene(&self, scene: Option<Scene>) {
+    /// What is shown belongs to this pair from now on.
+    pub(crate) fn set_displayed(&self, displayed: Option<DisplayedPair>) {
         let mut shared = self.shared();
-        shared.scene = scene;
+        shared.displayed = displayed;
         shared.curves.clear();
         shared.draped = None;
         drop(shared);
-        self.frame.send_replace(None);
+        self.shown.send_replace(None);
         self.figures.send_replace(Arc::from(""));
         self.progress.send_replace(Arc::from(""));
     }
 
-    pub(crate) fn scene(&self) -> Option<Scene> {
-        self.shared().scene.clone()
+    pub(crate) fn displayed(&self) -> Option<DisplayedPair> {
+        self.shared().displayed.clone()
     }
 
     /// Shows what landmarks would give. Where there is a drape, an initial shape comes too late and is not shown.
-    pub(crate) fn show(&self, scene: &Scene, kind: FrameKind, x: Arc<Positions>) {
-        self.put(scene, kind, x, None);
+    pub(crate) fn show(&self, displayed: &DisplayedPair, kind: ShownKind, x: Arc<Positions>) {
+        self.put(displayed, kind, x, None);
     }
 
     /// Shows a drape as far as it is.
-    pub(crate) fn show_drape(&self, scene: &Scene, x: Arc<Positions>, made: Made) {
-        self.put(scene, FrameKind::Draped, x, Some(made));
+    pub(crate) fn show_drape(
+        &self,
+        displayed: &DisplayedPair,
+        x: Arc<Positions>,
+        provenance: Provenance,
+    ) {
+        self.put(displayed, ShownKind::Draped, x, Some(provenance));
     }
 
-    fn put(&self, scene: &Scene, kind: FrameKind, x: Arc<Positions>, made: Option<Made>) {
+    fn put(
+        &self,
+        displayed: &DisplayedPair,
+        kind: ShownKind,
+        x: Arc<Positions>,
+        provenance: Option<Provenance>,
+    ) {
         let mut shared = self.shared();
-        if kind == FrameKind::Initial && shared.draped.is_some() {
+        if kind == ShownKind::Initial && shared.draped.is_some() {
             return;
         }
         shared.serial = shared.serial.wrapping_add(1);
         let serial = shared.serial;
-        let iteration = made.as_ref().map_or(0, |made| made.log.iteration);
+        let iteration = provenance.as_ref().map_or(0, |p| p.log.iteration);
         let mut message = Vec::with_capacity(16 + 12 * x.len());
         for n in [1, serial, kind as u32, iteration as u32] {
             message.extend(n.to_le_bytes());
         }
-        message.extend(position_bytes(&scene.target.frame, &x));
-        let frame = Arc::new(Frame {
+        message.extend(position_bytes(&displayed.target.frame, &x));
+        let shown = Arc::new(ShownShape {
             serial,
             kind,
             positions: x,
-            made,
+            provenance,
             message: message.into(),
         });
-        if kind == FrameKind::Draped {
-            shared.draped = Some(Arc::clone(&frame));
+        if kind == ShownKind::Draped {
+            shared.draped = Some(Arc::clone(&shown));
         }
-        self.frame.send_replace(Some(frame));
+        self.shown.send_replace(Some(shown));
     }
 
     /// The drape as it was last shown.
-    pub(crate) fn draped(&self) -> Option<Arc<Frame>> {
+    pub(crate) fn draped(&self) -> Option<Arc<ShownShape>> {
         self.shared().draped.clone()
     }
 
     /// Shows the drape again, after a shape that it might have taken; whether that was shown.
     pub(crate) fn show_drape_again(&self) -> bool {
         let draped = self.draped();
-        let is_other = |shown: &Option<Arc<Frame>>| {
-            shown.as_ref().map(|f| f.serial) != draped.as_ref().map(|f| f.serial)
+        let is_other = |shown: &Option<Arc<ShownShape>>| {
+            shown.as_ref().map(|s| s.serial) != draped.as_ref().map(|s| s.serial)
         };
-        let is_needed = draped.is_some() && is_other(&self.frame.borrow());
+        let is_needed = draped.is_some() && is_other(&self.shown.borrow());
         if is_needed {
-            self.frame.send_replace(draped);
+            self.shown.send_replace(draped);
         }
         is_needed
     }
@@ -206,14 +217,20 @@ impl Hub {
 }
 
 impl Shared {
+    /// An iteration has one value: the newest.
     fn record(&mut self, name: &str, iteration: usize, value: f64) {
-        let known = self.curves.iter_mut().find(|curve| curve.name == name);
-        match known {
-            Some(curve) => curve.points.push((iteration, value)),
-            None => self.curves.push(Curve {
+        let known = self.curves.iter().position(|curve| curve.name == name);
+        let row = known.unwrap_or_else(|| {
+            self.curves.push(Curve {
                 name: name.to_owned(),
-                points: vec![(iteration, value)],
-            }),
+                points: Vec::new(),
+            });
+            self.curves.len() - 1
+        });
+        let points = &mut self.curves[row].points;
+        if points.last().is_some_and(|(at, _)| *at == iteration) {
+            points.pop();
         }
+        points.push((iteration, value));
     }
 }

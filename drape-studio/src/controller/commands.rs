@@ -2,75 +2,74 @@
 
 use std::sync::Arc;
 
-use anyhow::{bail, Context as _, Result};
+use anyhow::{Context as _, Result};
+use mesh_draping::{Draping, Preset};
 
-use super::{ActiveRun, Desk, Inbox, Request, Status};
+use super::can::{Action, Status, OPEN_FIRST};
+use super::{ActiveRun, Command, Controller, Inbox};
 use crate::checkpoint::{self, Checkpoint};
-use crate::course::more_iterations;
-use crate::runner::{News, Order, Runner, RunnerParts};
+use crate::runner::{Order, Runner, RunnerParts, Update};
 use crate::session::{landmarks, Mark, RunLog};
 
-impl Desk {
-    /// Follows a request that is about the drape.
-    pub(super) fn command(&mut self, request: &Request) -> Result<()> {
-        match request {
-            Request::Drape => self.begin()?,
-            Request::Extend => self.extend()?,
-            Request::Reset => {
-                self.leave_run();
-                self.hub.forget_drape();
-                self.ask_preview();
+impl Controller {
+    /// Does what drives the drape, if that fits it as it is.
+    pub(super) fn drive(&mut self, command: Command) -> Result<()> {
+        self.finish_drag();
+        self.situation().check(Action::Command(command))?;
+        match command {
+            Command::Drape => {
+                self.begin_paused()?;
+                self.order(Order::Go)?;
             }
-            Request::Pause => self.order(Order::Pause)?,
-            Request::Resume => self.resume(Order::Go)?,
-            Request::Step => {
+            Command::Pause => self.order(Order::Pause)?,
+            Command::Resume => self.resume(Order::Go)?,
+            Command::Step => {
                 if self.run.is_none() {
                     self.begin_paused()?;
                 }
                 self.resume(Order::Step)?;
             }
-            Request::Stop => {
+            Command::Stop => {
                 self.order(Order::Pause)?;
-                if let Some(run) = &mut self.run {
-                    run.status = Status::Stopped;
-                }
+                self.set_status(Status::Stopped);
             }
-            _ => bail!("this is no command of the drape"),
+            Command::Extend => {
+                self.order(Order::Extend)?;
+                self.resume(Order::Go)?;
+            }
+            Command::Reset => {
+                self.leave_run();
+                self.broadcast.forget_drape();
+                self.ask_preview();
+            }
         }
         self.changed();
         Ok(())
     }
 
-    /// A drape from the landmarks as they are; an earlier one is dropped.
-    fn begin(&mut self) -> Result<()> {
-        self.begin_paused()?;
-        self.order(Order::Go)
-    }
-
+    /// A drape from the landmarks as they are that does not go yet; an earlier one is dropped.
     fn begin_paused(&mut self) -> Result<()> {
-        self.finish_drag();
         self.notice = None;
         let log = RunLog {
-            settings: self.settings.toml.clone(),
+            settings: self.session.document.settings.clone(),
             parts: self.session.document.parts.clone(),
             landmarks: self.complete_marks(),
             events: Vec::new(),
             iteration: 0,
         };
         self.leave_run();
-        self.hub.forget_drape();
+        self.broadcast.forget_drape();
         self.start_runner(log, None)
     }
 
     fn start_runner(&mut self, log: RunLog, state: Option<neural_drape::DrapeState>) -> Result<()> {
-        let scene = self.scene().context("open a source and a target first")?;
-        let n_more = more_iterations(&self.toolbox.settings(&log.settings)?.config);
+        let displayed = self.displayed.clone().context(OPEN_FIRST)?;
+        let n_more = Draping::n_more(&Preset::from_toml(&log.settings)?);
         self.n_runs += 1;
         let (number, inbox) = (self.n_runs, self.inbox.clone());
         let parts = RunnerParts {
-            scene,
-            toolbox: Arc::clone(&self.toolbox),
-            hub: Arc::clone(&self.hub),
+            displayed,
+            broadcast: Arc::clone(&self.broadcast),
             figures: Arc::clone(&self.figures),
             checkpoint: self.checkpoint_path(),
             log: log.clone(),
@@ -80,9 +79,10 @@ impl Desk {
         self.run = Some(ActiveRun {
             number,
             runner: Runner::start(parts, move |news| {
-                drop(inbox.send(Inbox::News(number, news)));
+                drop(inbox.send(Inbox::Update(number, news)));
             }),
             status: Status::Starting,
+            error: None,
             log,
             n_more,
         });
@@ -95,26 +95,23 @@ impl Desk {
         Ok(())
     }
 
-    /// Goes on, with the landmarks as they are.
-    fn resume(&mut self, order: Order) -> Result<()> {
-        self.finish_drag();
-        self.order_pending()?;
-        self.order(order)
+    fn set_status(&mut self, status: Status) {
+        if let Some(run) = &mut self.run {
+            run.status = status;
+        }
     }
 
-    /// Gives the drape more iterations; one that is over goes on.
-    fn extend(&mut self) -> Result<()> {
-        self.finish_drag();
-        let run = self.run.as_ref().context("there is no drape")?;
-        let is_over = matches!(run.status, Status::Finished | Status::Stopped);
-        if is_over {
-            self.order_pending()?;
+    /// Goes on, with the landmarks and parts as they are.
+    fn resume(&mut self, order: Order) -> Result<()> {
+        if self
+            .run
+            .as_ref()
+            .is_some_and(|run| run.status == Status::Stopped)
+        {
+            self.set_status(Status::Paused);
         }
-        self.order(Order::Extend)?;
-        if is_over {
-            self.order(Order::Go)?;
-        }
-        Ok(())
+        self.order_pending()?;
+        self.order(order)
     }
 
     /// Hands the drape what it has not seen yet; it is on disk by then, so that no drape that is taken up
@@ -144,15 +141,15 @@ impl Desk {
 
     /// Goes on, after a restart, with the drape that was in progress.
     pub(super) fn take_up_run(&mut self) {
-        if self.session.run.is_none() || self.scene().is_none() {
+        if self.session.run.is_none() || self.displayed.is_none() {
             self.session.run = None;
             return;
         }
         let path = self.checkpoint_path();
         let (log, state) = match checkpoint::read(&path) {
-            Ok(Checkpoint { story, state }) => {
-                self.hub.set_curves(story.curves);
-                (Some(story.log), Some(state))
+            Ok(Checkpoint { history, state }) => {
+                self.broadcast.set_curves(history.curves);
+                (Some(history.log), Some(state))
             }
             // A session that came without its drape: it is done again.
             Err(_) => (self.session.run.clone(), None),
@@ -166,21 +163,24 @@ impl Desk {
     }
 
     /// What the runner tells.
-    pub(super) fn hear(&mut self, number: u32, news: News) {
+    pub(super) fn hear(&mut self, number: u32, news: Update) {
         let Some(run) = self.run.as_mut().filter(|run| run.number == number) else {
             return;
         };
+        // One that was stopped before it began goes for a moment, and stands still again.
+        let is_stopped = run.status == Status::Stopped;
         match news {
-            News::Running => run.status = Status::Running,
-            News::Paused(log) => {
-                if run.status != Status::Stopped {
+            Update::Running if is_stopped => {}
+            Update::Running => run.status = Status::Running,
+            Update::Paused(log) => {
+                if !is_stopped {
                     run.status = Status::Paused;
                 }
                 run.log = log;
             }
-            News::Finished(log) => (run.status, run.log) = (Status::Finished, log),
-            News::Changed(log) => run.log = log,
-            News::Failed(error) => run.status = Status::Failed(error),
+            Update::Finished(log) => (run.status, run.log) = (Status::Finished, log),
+            Update::Changed(log) => run.log = log,
+            Update::Failed(error) => (run.status, run.error) = (Status::Failed, Some(error)),
         }
         self.session.run = Some(run.log.clone());
         self.changed();

@@ -1,14 +1,15 @@
 //! The state as every page gets it.
 
+use mesh_draping::Preset;
 use serde_json::{json, Value};
 
-use super::{Desk, Status};
+use super::Controller;
 use crate::session::{Mark, MarkKind};
 
-impl Desk {
+impl Controller {
     /// Inputs, landmarks, settings, the drape: everything but shapes and figures.
     pub(super) fn state(&self) -> Value {
-        let document = &self.session.document;
+        let (document, situation) = (&self.session.document, self.situation());
         let marks: Vec<Value> = document.marks.iter().map(|m| self.mark(m)).collect();
         json!({
             "type": "state",
@@ -24,14 +25,14 @@ impl Desk {
             "parts": document.parts,
             "inner": self.inner_state(),
             "settings": {
-                "preset": self.settings.preset,
-                "seed": self.settings.config.seed,
-                "n_iterations": self.settings.config.stages.iter().map(|s| s.n_iterations).sum::<usize>(),
-                "toml": self.settings.toml,
+                "preset": self.preset.name,
+                "seed": self.preset.drape.seed,
+                "n_iterations": self.preset.drape.stages.iter().map(|s| s.n_iterations).sum::<usize>(),
+                "toml": document.settings,
             },
-            "presets": self.toolbox.presets(),
-            "can_undo": self.session.can_undo(),
-            "can_redo": self.session.can_redo(),
+            "presets": Preset::names().collect::<Vec<_>>(),
+            "can": situation.can(),
+            "discards": situation.discarding(),
             "run": self.run_state(),
         })
     }
@@ -41,9 +42,9 @@ impl Desk {
             return Value::Null;
         };
         json!({
-            "name": file_name(source.file.path()),
-            "n_vertices": source.display.n_vertices,
-            "n_faces": source.display.n_faces,
+            "name": source.source.file().map(|file| file_name(file.path())),
+            "n_vertices": source.buffers.n_vertices,
+            "n_faces": source.buffers.n_faces,
             "kind": "mesh",
             "hash": self.session.source.as_ref().map(|r| &r.fnv1a),
             "symmetry": source.symmetry,
@@ -56,10 +57,10 @@ impl Desk {
             return Value::Null;
         };
         json!({
-            "name": file_name(&target.path),
-            "n_vertices": target.display.n_vertices,
-            "n_faces": target.display.n_faces,
-            "kind": if target.is_cloud() { "cloud" } else { "mesh" },
+            "name": target.target.path().map(file_name),
+            "n_vertices": target.buffers.n_vertices,
+            "n_faces": target.buffers.n_faces,
+            "kind": if target.target.is_cloud() { "cloud" } else { "mesh" },
             "hash": self.session.target.as_ref().map(|r| &r.fnv1a),
             "symmetry": target.symmetry,
         })
@@ -87,17 +88,9 @@ impl Desk {
         let Some(run) = &self.run else {
             return json!({ "status": "none" });
         };
-        let (status, error) = match &run.status {
-            Status::Starting => ("starting", None),
-            Status::Running => ("running", None),
-            Status::Paused => ("paused", None),
-            Status::Stopped => ("stopped", None),
-            Status::Finished => ("finished", None),
-            Status::Failed(error) => ("failed", Some(error)),
-        };
         json!({
-            "status": status,
-            "error": error,
+            "status": run.status,
+            "error": run.error,
             "iteration": run.log.iteration,
             "pending": self.are_marks_pending() || self.are_parts_pending(),
             "pending_landmarks": self.are_marks_pending(),
