@@ -15,3 +15,4 @@ mod io_xyz;
 mod point_cloud;
 mod target_variants;
 mod triangle_soup;
+mod triangulation;

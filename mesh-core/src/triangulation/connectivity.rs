@@ -14,23 +14,23 @@ pub struct Pieces {
 
 /// What touches what among triangles.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Connectivity {
+pub(super) struct Connectivity {
     /// The triangles themselves, and those at each vertex.
-    pub(crate) fans: TriangleFans,
+    pub(super) fans: TriangleFans,
     /// Ends of each edge, the lower vertex first, in order.
-    pub(crate) edges: Vec<[VertexId; 2]>,
+    pub(super) edges: Vec<[VertexId; 2]>,
     /// The triangles with a side on each edge, ascending.
-    pub(crate) edge_triangles: Rows<u32>,
+    pub(super) edge_triangles: Rows<u32>,
     /// The edge opposite to each corner of each triangle.
-    pub(crate) triangle_edges: Vec<[u32; 3]>,
+    pub(super) triangle_edges: Vec<[u32; 3]>,
     /// The other ends of the edges at each vertex, ascending.
-    pub(crate) vertex_neighbours: Rows<VertexId>,
-    pub(crate) boundary: Boundary,
-    pub(crate) pieces: Pieces,
+    pub(super) vertex_neighbours: Rows<VertexId>,
+    pub(super) boundary: Boundary,
+    pub(super) pieces: Pieces,
 }
 
 impl Connectivity {
-    pub(crate) fn new(n_vertices: usize, triangles: Vec<[VertexId; 3]>) -> Self {
+    pub(super) fn new(n_vertices: usize, triangles: Vec<[VertexId; 3]>) -> Self {
         let loops = triangles.iter().map(|t| &t[..]).enumerate();
         let sides = sides_by_edge(loops);
         let mut triangle_edges = vec![[0; 3]; triangles.len()];
