@@ -33,9 +33,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     let start = Instant::now();
     let initial = initialize(input, &config)?;
     println!(
-        "{:.3} s, {} vertices carried by the space around them",
+        "{:.3} s, {} vertices on pieces without a landmark",
         start.elapsed().as_secs_f64(),
-        initial.n_carried
+        initial.n_extrapolated
     );
     file.write(out, &initial.positions)?;
     Ok(())

@@ -35,6 +35,7 @@ mod affine;
 mod arap;
 mod biharmonic;
 mod cells;
+mod config;
 mod deformer;
 mod error;
 mod initialize;
@@ -49,10 +50,9 @@ pub use affine::{
 };
 pub use arap::{ArapScratch, ArapSolver};
 pub use biharmonic::{biharmonic_displacement, BiharmonicSolver};
+pub use config::{InitConfig, Pinning, Spread};
 pub use error::InitError;
-pub use initialize::{
-    adjust, initialize, point_pairs, InitConfig, InitInput, Initial, Pinning, Spread,
-};
+pub use initialize::{adjust, initialize, point_pairs, InitInput, Initial};
 pub use interactive::InteractiveInit;
 pub use pose::{find_pose, Pose, PoseInput};
 pub use similar::{SimilarConfig, SimilarSolver};

@@ -6,7 +6,7 @@ use mesh_core::{
     VertexData,
 };
 
-use crate::evaluate::EvaluationConfig;
+use crate::config::EvaluationConfig;
 use crate::normalize::common_frame;
 
 /// What the target is, and so what a distance to it means.

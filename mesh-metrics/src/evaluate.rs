@@ -3,14 +3,16 @@
 use mesh_core::{FaceId, Landmark, Point3, Positions, TargetSurface, Triangulation, UnitFrame};
 
 use crate::chamfer::chamfer;
+use crate::config::EvaluationConfig;
 use crate::defects::{
     folded_edges, mean_angle_deviation, opposed_triangles, skinny_triangles, triangle_qualities,
     SKINNY_QUALITY,
 };
 use crate::dirichlet::{dirichlet_energy, dirichlet_unit_area, face_stretch};
 use crate::distances::{vertex_distances, DirectedDistances, SurfaceDistances, TargetKind};
-use crate::hausdorff::{directed_hausdorff_sampled, hausdorff_sampled, percentiles};
+use crate::hausdorff::{directed_hausdorff_sampled, hausdorff_sampled};
 use crate::normalize::{common_frame, own_frame};
+use crate::percentile::percentiles;
 use crate::q_transfer::{q_transfer, HAUSDORFF_WEIGHT, PAPER_TAU};
 use crate::report::{
     Defects, DistanceSummary, LandmarkFit, LandmarkResidual, Places, Report, TruthError,
@@ -32,26 +34,6 @@ pub struct EvaluationInput<'a> {
     pub landmarks: &'a [Landmark],
     /// Where each vertex belongs, if known, in the target's coordinates.
     pub truth: Option<&'a Positions>,
-}
-
-/// How densely surfaces are sampled.
-#[derive(Clone, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
-pub struct EvaluationConfig {
-    /// Random points on each surface, beside its vertices.
-    pub n_samples: usize,
-    /// Same seed, same figures.
-    pub seed: u64,
-}
-
-impl EvaluationConfig {
-    /// 100 000 samples on each surface: another seed moves the Hausdorff distance by less than 0.001.
-    pub const fn standard() -> Self {
-        Self {
-            n_samples: 100_000,
-            seed: 0,
-        }
-    }
 }
 
 /// A result that cannot be judged.

@@ -1,6 +1,7 @@
 //! Properties of meshes, files and target surfaces.
 
 mod closest_point;
+mod denoise;
 mod io_convert;
 mod io_data;
 mod io_gltf;
