@@ -6,6 +6,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::input::Pair;
 
+/// The study of the paper's terms that starts from the affine map alone.
+pub(crate) const STUDY_OF_START: &str = "study-affine-start";
+
 /// How the source is brought to its landmarks before it is draped.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
@@ -32,7 +35,7 @@ impl Start {
     pub(crate) fn of_preset(preset: &str) -> Self {
         match preset {
             "paper" => Self::Paper,
-            "study-affine-start" => Self::Affine,
+            STUDY_OF_START => Self::Affine,
             _ => Self::Standard,
         }
     }

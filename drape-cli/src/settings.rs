@@ -7,7 +7,7 @@ use anyhow::{anyhow, Context as _};
 use neural_drape::{DrapeConfig, OverlapMode};
 use toml::{Table, Value};
 
-use crate::initial::Start;
+use crate::initial::{Start, STUDY_OF_START};
 
 /// Which settings to run with.
 #[derive(Clone, Debug, clap::Args)]
@@ -134,7 +134,7 @@ fn over_preset(mut overrides: Table, preset: Option<&str>) -> anyhow::Result<Set
         .or(named)
         .unwrap_or_else(|| DrapeConfig::PRESETS[0].to_owned());
     let mut merged =
-        Value::try_from(DrapeConfig::named(&preset)?).context("the preset cannot be read")?;
+        Value::try_from(preset_config(&preset)?).context("the preset cannot be read")?;
     merge(&mut merged, Value::Table(overrides));
     let config = merged
         .try_into()
@@ -144,6 +144,14 @@ fn over_preset(mut overrides: Table, preset: Option<&str>) -> anyhow::Result<Set
         preset,
         config,
     })
+}
+
+/// The settings of a preset; the study of another start differs in its start alone.
+pub(crate) fn preset_config(preset: &str) -> anyhow::Result<DrapeConfig> {
+    match preset {
+        STUDY_OF_START => Ok(DrapeConfig::study()),
+        other => Ok(DrapeConfig::named(other)?),
+    }
 }
 
 /// A key that is no setting of the drape itself.

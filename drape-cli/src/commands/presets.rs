@@ -4,6 +4,7 @@ use std::process::ExitCode;
 
 use neural_drape::DrapeConfig;
 
+use crate::initial::STUDY_OF_START;
 use crate::output::say;
 use crate::settings::{to_toml, SettingsArgs};
 
@@ -16,9 +17,11 @@ pub(crate) struct Args {
 pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
     match &args.name {
         None => {
+            let studies = DrapeConfig::studies();
             let names = DrapeConfig::PRESETS
                 .into_iter()
-                .chain(DrapeConfig::studies());
+                .chain(studies.iter().map(|s| s.name))
+                .chain([STUDY_OF_START]);
             say(&names.map(|name| format!("{name}\n")).collect::<String>())?;
         }
         Some(name) => {

@@ -23,6 +23,7 @@ use neural_drape::DrapeConfig;
 use serde::Deserialize;
 
 use super::{Method, Pair, Task, INITIAL};
+use crate::settings::preset_config;
 
 /// A list of runs: every pair with every preset and every seed.
 #[derive(Debug)]
@@ -151,7 +152,7 @@ fn method(preset: String, folder: &Path) -> anyhow::Result<Method> {
         return Ok(Method::Config(folder.join(preset)));
     }
     if preset != INITIAL {
-        DrapeConfig::named(&preset)?;
+        preset_config(&preset)?;
     }
     Ok(Method::Preset(preset))
 }
