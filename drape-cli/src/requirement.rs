@@ -214,7 +214,9 @@ mod tests {
             n_samples: 10,
             seed: 0,
         };
-        let figures = mesh_draping::mesh_metrics::evaluate(input, &config).unwrap().figures();
+        let figures = mesh_draping::mesh_metrics::evaluate(input, &config)
+            .unwrap()
+            .figures();
         assert!(figures.iter().all(|(name, _)| NAMES.contains(name)));
     }
 }

@@ -107,7 +107,10 @@ impl fmt::Display for WorstPlace {
         let percent = 100.0 * self.distance;
         match self.kind {
             PlaceKind::NotReached => {
-                write!(f, "{percent:.1} % from the target, the target is not reached")
+                write!(
+                    f,
+                    "{percent:.1} % from the target, the target is not reached"
+                )
             }
             PlaceKind::TargetEnds => {
                 write!(f, "{percent:.1} % from the target, the target ends there")

@@ -4,6 +4,7 @@ use std::process::ExitCode;
 
 use mesh_draping::Preset;
 
+use crate::initial::STUDY_OF_START;
 use crate::output::say;
 
 #[derive(Debug, clap::Args)]
@@ -15,7 +16,8 @@ pub(crate) struct Args {
 pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
     match &args.name {
         None => {
-            let names = Preset::names().chain(Preset::studies());
+            let studies = Preset::studies();
+            let names = Preset::names().chain(studies.iter().map(|study| study.name.as_str()));
             say(&names.map(|name| format!("{name}\n")).collect::<String>())?;
         }
         Some(name) => say(&Preset::named(name)?.to_toml())?,

@@ -46,7 +46,9 @@ fn it_takes_other_landmarks_and_refuses_wrong_ones() {
     let mut landmarks = ball_and_ellipsoid(6).landmarks;
     landmarks[0].target.x += 1.0;
     background.set_landmarks(landmarks.clone());
-    let at = landmarks[0].source.position(&background.positions().unwrap());
+    let at = landmarks[0]
+        .source
+        .position(&background.positions().unwrap());
     assert!((at - landmarks[0].target).norm() < 1e-6);
     assert_eq!(background.status().refused, None);
 

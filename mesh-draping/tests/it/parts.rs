@@ -40,7 +40,16 @@ fn an_inner_piece_that_nobody_names_becomes_a_rigid_body() {
     let resolved = Parts::default().resolve(&pair).unwrap();
     let is_rigid = |v| resolved.regions.rigid[v] && resolved.regions.attraction[v] == 0.0;
     assert!(hidden.inner[0].vertices.iter().all(|&v| is_rigid(v)));
-    let is_told = |n: &Note| matches!(n, Note::InnerPartsFreed { n_rigid: 1, n_free: 0, .. });
+    let is_told = |n: &Note| {
+        matches!(
+            n,
+            Note::InnerPartsFreed {
+                n_rigid: 1,
+                n_free: 0,
+                ..
+            }
+        )
+    };
     assert!(resolved.notes.iter().any(is_told));
 }
 

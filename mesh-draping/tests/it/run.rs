@@ -71,7 +71,15 @@ fn a_dense_source_is_draped_by_a_stand_in_first() {
     }
     assert_eq!(shown, [pair.source.rest().len(); 4]);
     let outcome = draping.finish().unwrap();
-    let is_stand_in = |note: &Note| matches!(note, Note::StandIn { n_vertices: 3000, .. });
+    let is_stand_in = |note: &Note| {
+        matches!(
+            note,
+            Note::StandIn {
+                n_vertices: 3000,
+                ..
+            }
+        )
+    };
     assert!(outcome.notes.iter().any(is_stand_in), "{:?}", outcome.notes);
 
     let whole = Transfer::of_pair(pair, short(1)).without_stand_in();

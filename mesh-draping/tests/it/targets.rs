@@ -5,7 +5,11 @@ use mesh_draping::{Error, Note, Target};
 
 #[test]
 fn a_clean_target_says_nothing() {
-    for soup in [shapes::icosphere(2), shapes::quad_sphere(3), shapes::open_grid(3, 3)] {
+    for soup in [
+        shapes::icosphere(2),
+        shapes::quad_sphere(3),
+        shapes::open_grid(3, 3),
+    ] {
         let target = Target::of_soup(soup.clone()).unwrap();
         assert!(target.notes().is_empty(), "{:?}", target.notes());
         assert_eq!(target.vertices(), soup.positions);
@@ -29,7 +33,10 @@ fn crumbs_are_left_out_and_stay_in_the_soup() {
     };
     assert!(*share > 0.0 && *share < 1e-3);
     assert!(target.judged().bounds().max.x < 1.1);
-    assert_eq!(target.triangles().len(), shapes::icosphere(3).faces.len() + 1);
+    assert_eq!(
+        target.triangles().len(),
+        shapes::icosphere(3).faces.len() + 1
+    );
 }
 
 #[test]
