@@ -18,7 +18,6 @@
 //! [`SurfaceMatcher::resample`] draws samples and finds closest points; it alone changes what the distance terms see.
 
 mod area_kl;
-mod boundary;
 mod chamfer;
 mod conformal;
 mod corner_angle;
