@@ -2,11 +2,10 @@
 
 use std::process::ExitCode;
 
-use neural_drape::DrapeConfig;
+use mesh_draping::Preset;
 
 use crate::initial::STUDY_OF_START;
 use crate::output::say;
-use crate::settings::{to_toml, SettingsArgs};
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
@@ -17,23 +16,11 @@ pub(crate) struct Args {
 pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
     match &args.name {
         None => {
-            let studies = DrapeConfig::studies();
-            let names = DrapeConfig::PRESETS
-                .into_iter()
-                .chain(studies.iter().map(|s| s.name))
-                .chain([STUDY_OF_START]);
+            let studies = Preset::studies();
+            let names = Preset::names().chain(studies.iter().map(|study| study.name.as_str()));
             say(&names.map(|name| format!("{name}\n")).collect::<String>())?;
         }
-        Some(name) => {
-            let settings = SettingsArgs {
-                preset: Some(name.clone()),
-                config: None,
-                initial: None,
-                seed: None,
-                overlap: None,
-            };
-            say(&to_toml(&settings.settings()?)?)?;
-        }
+        Some(name) => say(&Preset::named(name)?.to_toml())?,
     }
     Ok(ExitCode::SUCCESS)
 }

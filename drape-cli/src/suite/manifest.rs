@@ -19,11 +19,10 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{anyhow, ensure, Context as _};
 use mesh_core::io::Format;
-use neural_drape::DrapeConfig;
+use mesh_draping::Preset;
 use serde::Deserialize;
 
 use super::{Method, Pair, Task, INITIAL};
-use crate::settings::preset_config;
 
 /// A list of runs: every pair with every preset and every seed.
 #[derive(Debug)]
@@ -74,7 +73,7 @@ impl Manifest {
             )
         })?;
         let presets = if file.presets.is_empty() {
-            vec![DrapeConfig::PRESETS[0].to_owned()]
+            vec![Preset::standard().name]
         } else {
             file.presets
         };
@@ -152,7 +151,7 @@ fn method(preset: String, folder: &Path) -> anyhow::Result<Method> {
         return Ok(Method::Config(folder.join(preset)));
     }
     if preset != INITIAL {
-        preset_config(&preset)?;
+        Preset::named(&preset)?;
     }
     Ok(Method::Preset(preset))
 }
