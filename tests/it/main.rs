@@ -1,5 +1,6 @@
 //! End-to-end tests: the command as a user runs it, files in and files out.
 
+mod architecture;
 mod bad_input;
 mod commands;
 mod data;

@@ -4,7 +4,6 @@ use std::process::ExitCode;
 
 use mesh_draping::Preset;
 
-use crate::initial::STUDY_OF_START;
 use crate::output::say;
 
 #[derive(Debug, clap::Args)]
@@ -16,9 +15,9 @@ pub(crate) struct Args {
 pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
     match &args.name {
         None => {
-            let studies = Preset::studies();
-            let names = Preset::names().chain(studies.iter().map(|study| study.name.as_str()));
-            say(&names.map(|name| format!("{name}\n")).collect::<String>())?;
+            let studies = Preset::studies().into_iter().map(|study| study.name);
+            let names = Preset::names().map(str::to_owned).chain(studies);
+            say(&names.map(|name| name + "\n").collect::<String>())?;
         }
         Some(name) => say(&Preset::named(name)?.to_toml())?,
     }
