@@ -16,6 +16,26 @@
 //! | sliding along the surface | [`Drift`] | beyond the paper |
 //!
 //! [`SurfaceMatcher::resample`] draws samples and finds closest points; it alone changes what the distance terms see.
+//!
+//! ```
+//! use std::sync::Arc;
+//! use mesh_core::{shapes, Point3, Positions, Triangulation, Vector3, VertexData};
+//! use mesh_loss::{CornerAngle, Loss};
+//!
+//! let (mesh, rest) = shapes::quad_sphere(6).into_halfedge()?;
+//! let angles = CornerAngle::new(&Arc::new(Triangulation::new(&mesh, &rest)), &rest);
+//!
+//! // A sphere that was stretched has other angles; a small step against the gradient brings them nearer.
+//! let x = rest.map(|p| Point3::new(2.0 * p.x, p.y, p.z));
+//! let mut gradient = VertexData::new(x.len(), Vector3::zeros());
+//! let before = angles.accumulate(&x, 1.0, &mut gradient);
+//! let nearer: Positions = x.iter().zip(&gradient).map(|(p, g)| p - g).collect();
+//! let after = angles.accumulate(&nearer, 1.0, &mut gradient);
+//! assert!(0.0 < after && after < before);
+//! # Ok::<(), mesh_core::TopologyError>(())
+//! ```
+//!
+//! `examples/own_descent.rs` is a whole descent on terms of this crate.
 
 mod area_kl;
 mod chamfer;

@@ -15,6 +15,38 @@ use crate::surfaces::{Surfaces, NO_HINT};
 /// Draws samples on a moving mesh and on its target and matches each with its closest point.
 ///
 /// The mesh lives in `frame`, the target in its own coordinates; matches are in `frame`.
+///
+/// A plane a quarter above another is a quarter from it, both ways:
+///
+/// ```
+/// use std::sync::Arc;
+/// use mesh_core::sampling::SeededRng;
+/// use mesh_core::{
+///     shapes, Point3, Profile, TargetSurface, TriangleSoup, Triangulation, UnitFrame, Vector3, VertexData,
+/// };
+/// use mesh_loss::{Chamfer, Loss, Overlap, SamplingConfig, SurfaceMatcher};
+///
+/// let (mesh, rest) = shapes::open_grid(4, 4).into_halfedge()?;
+/// let triangulation = Arc::new(Triangulation::new(&mesh, &rest));
+/// let target: Arc<dyn TargetSurface> = Arc::new(TriangleSoup::new(shapes::open_grid(4, 4))?);
+/// let x = rest.map(|p| p + Vector3::z() * 0.25);
+/// let frame = UnitFrame { center: Point3::origin(), scale: 1.0 };
+/// let sampling = SamplingConfig {
+///     n_samples: 100,
+///     face_uniform: 0.5,
+///     normal_bias: None,
+///     n_hard: 0,
+///     overlap: Overlap::default(),
+///     mutual: 1.0,
+/// };
+///
+/// let mut matcher = SurfaceMatcher::new(&triangulation, &x, &target, frame);
+/// let matches = matcher.resample(&x, &sampling, &mut SeededRng::new(7), &mut Profile::off());
+/// let mut gradient = VertexData::new(x.len(), Vector3::zeros());
+/// let value = Chamfer(&matches).accumulate(&x, 1.0, &mut gradient);
+/// assert!((value - 0.5).abs() < 1e-12);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub struct SurfaceMatcher {
     triangulation: Arc<Triangulation>,
     target: Arc<dyn TargetSurface>,

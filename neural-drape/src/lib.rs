@@ -11,6 +11,41 @@
 //! | go on with other landmarks | [`Drape::set_landmarks`], [`Drape::displace`], [`Drape::extend`] |
 //! | keep a drape in progress | [`Drape::state`], [`Drape::restore`] |
 //! | do to other points what was done to the source | [`Warp::new`], [`Warp::apply`] |
+//!
+//! ```
+//! use std::sync::Arc;
+//! use mesh_core::{shapes, Landmark, Point3, TargetSurface, TriangleSoup, Triangulation, VertexId};
+//! use neural_drape::{Drape, DrapeConfig, DrapeInput};
+//!
+//! // A sphere of quads over an ellipsoid of triangles.
+//! let (mesh, rest) = shapes::quad_sphere(8).into_halfedge()?;
+//! let mut ellipsoid = shapes::icosphere(3);
+//! ellipsoid.positions.iter_mut().for_each(|p| *p = Point3::new(p.x, 0.7 * p.y, 0.5 * p.z));
+//! let target: Arc<dyn TargetSurface> = Arc::new(TriangleSoup::new(ellipsoid)?);
+//!
+//! let top = VertexId::new(0);
+//! let place = Point3::new(rest[top].x, 0.7 * rest[top].y, 0.5 * rest[top].z);
+//! let input = DrapeInput {
+//!     triangulation: &Arc::new(Triangulation::new(&mesh, &rest)),
+//!     initial: &rest.map(|p| p * 0.8),
+//!     rest: &Arc::new(rest),
+//!     target: &target,
+//!     landmarks: &[Landmark::new(top, place)],
+//! };
+//! let mut drape = Drape::new(input, DrapeConfig { seed: 7, ..DrapeConfig::quick() })?;
+//! while let Some(step) = drape.step()? {
+//!     // Show `step`; pause, read `drape.positions()`, change landmarks, or stop, at any step.
+//!     assert!(step.total.is_finite());
+//! }
+//! let draped = drape.finish().positions;
+//! assert!((draped[top] - place).norm() < 0.01);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! `examples/threaded.rs` drapes on a thread, with progress, pause and cancel.
+//!
+//! The cargo feature `network`, on by default, brings the paper's network (and dfdx); the preconditioned vertices need
+//! none of it.
 
 mod check;
 mod config;
