@@ -80,8 +80,7 @@ pub(crate) fn explanation(explanation: &Explanation) -> String {
         text += "      mean    half   90 %   99 %    all\n";
     }
     for r in &explanation.regions {
-        let [mean, p50, p90, p99, max] =
-            [r.mean, r.p50, r.p90, r.p99, r.max].map(|d| 100.0 * d);
+        let [mean, p50, p90, p99, max] = [r.mean, r.p50, r.p90, r.p99, r.max].map(|d| 100.0 * d);
         let _ = writeln!(
             text,
             "    {mean:>6.3}  {p50:>6.3} {p90:>6.3} {p99:>6.3} {max:>6.3}  {} ({} vertices)",

@@ -31,6 +31,7 @@
 
 mod background;
 mod draping;
+mod ending;
 mod error;
 mod explain;
 mod history;

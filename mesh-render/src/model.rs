@@ -27,11 +27,7 @@ pub struct Model {
 
 impl Model {
     /// The mesh at `positions`, its polygons split as `triangulation` says.
-    pub fn mesh(
-        mesh: &HalfedgeMesh,
-        triangulation: &Triangulation,
-        positions: &Positions,
-    ) -> Self {
+    pub fn mesh(mesh: &HalfedgeMesh, triangulation: &Triangulation, positions: &Positions) -> Self {
         let facets = triangulation
             .triangles()
             .iter()

@@ -5,7 +5,7 @@ mod parts;
 mod settings;
 mod view;
 
-pub(crate) use inputs::{read_truth, Inputs, Morphing, MorphArgs, WeldArgs};
+pub(crate) use inputs::{read_truth, Inputs, MorphArgs, Morphing, WeldArgs};
 pub(crate) use parts::PartArgs;
 pub(crate) use settings::{InitialArg, SettingsArgs};
 pub(crate) use view::ViewArgs;

@@ -10,7 +10,6 @@ use neural_drape::Warp;
 use crate::args::MorphArgs;
 use crate::output::{check_distinct, check_mesh, left_beside, say, warn};
 
-
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
     /// Map saved by `drape transfer --warp`

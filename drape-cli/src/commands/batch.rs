@@ -52,11 +52,7 @@ pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
 fn tasks(args: &Args) -> anyhow::Result<Vec<Task>> {
     let method = match (&args.settings.config, &args.settings.preset) {
         (Some(path), _) => Method::Config(path.clone()),
-        (None, preset) => Method::Preset(
-            preset
-                .clone()
-                .unwrap_or_else(|| Preset::standard().name),
-        ),
+        (None, preset) => Method::Preset(preset.clone().unwrap_or_else(|| Preset::standard().name)),
     };
     let settings = &args.settings;
     let mut options = vec![

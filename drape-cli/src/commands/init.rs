@@ -62,7 +62,9 @@ pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let mut pair = inputs.read()?;
     pair.source = pair.source.with_morphs(args.morphs.morphs.into());
     let truth = args.truth.as_deref();
-    let truth = truth.map(|path| read_truth(path, &pair.source)).transpose()?;
+    let truth = truth
+        .map(|path| read_truth(path, &pair.source))
+        .transpose()?;
     let mut warnings = words::about_inputs(&pair);
     if let Some(file) = pair.source.file() {
         file.check_writable(&args.output)?;

@@ -93,7 +93,6 @@ impl From<FormArg> for Form {
     }
 }
 
-
 impl Files {
     fn read(&self) -> anyhow::Result<Pair> {
         let inputs = Inputs {

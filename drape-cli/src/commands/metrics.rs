@@ -54,7 +54,9 @@ pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let pair = inputs.read()?;
     let draped = read_truth(&args.result, &pair.source)?;
     let truth = args.truth.as_deref();
-    let truth = truth.map(|path| read_truth(path, &pair.source)).transpose()?;
+    let truth = truth
+        .map(|path| read_truth(path, &pair.source))
+        .transpose()?;
     let report = pair.judge(&draped, truth.as_ref())?;
     if args.json {
         let figures = report

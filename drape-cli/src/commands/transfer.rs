@@ -80,7 +80,9 @@ pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let mut pair = stages.time("reading", || inputs.read())?;
     pair.source = pair.source.with_morphs(args.morphs.morphs.into());
     let truth = args.truth.as_deref();
-    let truth = truth.map(|path| read_truth(path, &pair.source)).transpose()?;
+    let truth = truth
+        .map(|path| read_truth(path, &pair.source))
+        .transpose()?;
     let mut warnings = words::about_inputs(&pair);
     if let Some(file) = pair.source.file() {
         file.check_writable(&args.output)?;
@@ -211,7 +213,9 @@ impl Done<'_> {
             ])
         };
         let views = args.view.views_or(&[View::FRONT_QUARTER]);
-        Ok(Image::column(&views.into_iter().map(row).collect::<Vec<_>>()))
+        Ok(Image::column(
+            &views.into_iter().map(row).collect::<Vec<_>>(),
+        ))
     }
 
     fn page(&self) -> anyhow::Result<String> {

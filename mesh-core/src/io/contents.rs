@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::ops::Range;
 
-use crate::{PolygonSoup, Vector3};
+use crate::{Point3, PolygonSoup, Vector3};
 
 /// What a file holds beside points and polygons: for people to look at, and kept when the file is written back.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -73,13 +73,6 @@ impl NamedFaces {
     }
 }
 
-/// What the reader of a format returns.
-#[derive(Debug, Default)]
-pub(super) struct Parsed {
-    pub(super) soup: PolygonSoup,
-    pub(super) contents: Contents,
-}
-
 /// Collects the runs of faces that follow a line like `g arm hand`.
 #[derive(Default)]
 pub(super) struct NameRuns {
@@ -144,6 +137,18 @@ impl CarriedNormals {
         Self { read, sums }
     }
 
+    /// Those of a file with one normal per vertex.
+    pub(super) fn of_vertices(read: Vec<Vector3>, rest: &PolygonSoup, moved: &[Point3]) -> Self {
+        let mut carried = Self::new(read);
+        for corners in &rest.faces {
+            let areas = [&rest.positions[..], moved].map(|x| polygon_area_vector(x, corners));
+            for &v in corners {
+                carried.add_corner(v as usize, areas);
+            }
+        }
+        carried
+    }
+
     /// Adds the corner of a face with the area vectors `rest` (as read) and `moved`, whose normal is `row`.
     pub(super) fn add_corner(&mut self, row: usize, [rest, moved]: [Vector3; 2]) {
         let (Some(read), Some(sums)) = (self.read.get(row), self.sums.get_mut(row)) else {
@@ -171,7 +176,7 @@ pub(super) fn unit(v: Vector3) -> Option<Vector3> {
 }
 
 /// Twice the area of a polygon times its normal: `Σ (pᵢ − p₀) × (pᵢ₊₁ − p₀)`.
-pub(super) fn polygon_area_vector(positions: &[crate::Point3], corners: &[u32]) -> Vector3 {
+pub(super) fn polygon_area_vector(positions: &[Point3], corners: &[u32]) -> Vector3 {
     let Some((&first, rest)) = corners.split_first() else {
         return Vector3::zeros();
     };
@@ -184,7 +189,6 @@ pub(super) fn polygon_area_vector(positions: &[crate::Point3], corners: &[u32]) 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Point3;
 
     #[test]
     fn runs_of_one_name_are_collected() {

@@ -1,6 +1,7 @@
 //! What a file loses when it is written in another format.
 
 use super::contents::Contents;
+use super::document::{Codec, Geometry};
 use super::format::Format;
 use crate::PolygonSoup;
 
@@ -11,23 +12,24 @@ pub(super) fn lost(
     soup: &PolygonSoup,
     contents: &Contents,
 ) -> Option<String> {
+    let (from, to) = (from.codec(), to.codec());
     let lost = lost_elements(from, to, soup, contents);
     let mut changed = Vec::new();
     let n_polygons = soup.faces.iter().filter(|face| face.len() > 3).count();
-    if n_polygons > 0 && has_triangles_only(to) {
+    if n_polygons > 0 && to.geometry.is_triangles() {
         let verb = if n_polygons == 1 { "becomes" } else { "become" };
         changed.push(format!(
             "{} {verb} triangles",
             counted(n_polygons, "polygons")
         ));
     }
-    if to == Format::Stl {
+    if to.geometry == Geometry::SeparateTriangles {
         changed.push("each triangle gets corners of its own".to_owned());
     }
-    if matches!(to, Format::Gltf | Format::Glb) && contents.n_uvs > 0 && keeps_uvs(from, to) {
+    if to.geometry == Geometry::Triangles && contents.n_uvs > 0 && keeps_uvs(from, to) {
         changed.push("vertices are split where texture coordinates differ".to_owned());
     }
-    if has_triangles_only(to) {
+    if to.geometry.is_triangles() {
         changed.push("coordinates are rounded to single precision".to_owned());
     }
     if lost.is_empty() && changed.is_empty() {
@@ -35,14 +37,21 @@ pub(super) fn lost(
     }
     let kept = (!lost.is_empty()).then(|| format!("these are not kept: {}", lost.join(", ")));
     let told: Vec<String> = kept.into_iter().chain(changed).collect();
-    let (from, to) = (from.name(), to.name());
+    let (from, to) = (from.name, to.name);
     Some(format!("from {from} to {to}, {}", told.join("; ")))
 }
 
-fn lost_elements(from: Format, to: Format, soup: &PolygonSoup, contents: &Contents) -> Vec<String> {
+fn lost_elements(from: &Codec, to: &Codec, soup: &PolygonSoup, contents: &Contents) -> Vec<String> {
     let (n_uvs, n_faces) = (contents.n_uvs, soup.faces.len());
     let counts = [
-        (if to == Format::Xyz { n_faces } else { 0 }, "faces"),
+        (
+            if to.geometry == Geometry::Points {
+                n_faces
+            } else {
+                0
+            },
+            "faces",
+        ),
         (
             if keeps_uvs(from, to) { 0 } else { n_uvs },
             "texture coordinates",
@@ -72,11 +81,6 @@ fn counted(n: usize, plural: &str) -> String {
 }
 
 /// Whether texture coordinates go from one format to the other.
-fn keeps_uvs(from: Format, to: Format) -> bool {
-    let has_uvs = |format| matches!(format, Format::Obj | Format::Gltf | Format::Glb);
-    has_uvs(from) && has_uvs(to)
-}
-
-fn has_triangles_only(format: Format) -> bool {
-    matches!(format, Format::Stl | Format::Gltf | Format::Glb)
+fn keeps_uvs(from: &Codec, to: &Codec) -> bool {
+    from.has_uvs && to.has_uvs
 }

@@ -3,7 +3,7 @@
 use std::error::Error;
 use std::fmt;
 use std::io;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use crate::TopologyError;
 
@@ -44,6 +44,17 @@ pub enum Place {
         /// Its row, counted from 0.
         row: usize,
     },
+}
+
+impl Place {
+    /// The line of the text `bytes` that byte `at` is on.
+    pub(super) fn in_text(bytes: &[u8], at: usize) -> Self {
+        let line_feeds = bytes[..at.min(bytes.len())].iter().filter(|&&b| b == b'\n');
+        let lone_returns = bytes[..bytes.len().min(at + 1)]
+            .windows(2)
+            .filter(|pair| pair[0] == b'\r' && pair[1] != b'\n');
+        Self::Line(1 + line_feeds.count() + lone_returns.count())
+    }
 }
 
 impl fmt::Display for Place {
@@ -213,72 +224,14 @@ pub enum WriteError {
     Source(#[from] ReadError),
 }
 
-/// What the writer of a format returns: it does not know the file's name.
-#[derive(Debug)]
-pub(super) enum Unwritable {
-    /// A vertex whose position the format cannot hold.
-    Vertex(usize),
-    Faces(TopologyError),
-}
+#[cfg(test)]
+mod tests {
+    use super::*;
 
-impl From<TopologyError> for Unwritable {
-    fn from(error: TopologyError) -> Self {
-        Self::Faces(error)
+    #[test]
+    fn lines_are_counted_for_every_line_end() {
+        let text = b"a\nb\r\nc\rd";
+        let places = [0, 2, 5, 7].map(|at| Place::in_text(text, at));
+        assert_eq!(places, [1, 2, 3, 4].map(Place::Line));
     }
-}
-
-impl Unwritable {
-    /// The error with the name of the file that was to be written.
-    pub(super) fn at(self, path: &Path) -> WriteError {
-        let path = path.to_owned();
-        match self {
-            Self::Vertex(vertex) => WriteError::NotFinite { path, vertex },
-            Self::Faces(source) => WriteError::Faces { path, source },
-        }
-    }
-}
-
-/// What a reader of one format returns: it does not know the file's name.
-#[derive(Debug)]
-pub(super) struct Fault {
-    pub(super) place: Place,
-    pub(super) problem: ReadProblem,
-}
-
-impl Fault {
-    /// A fault of the file as a whole.
-    pub(super) fn whole(problem: ReadProblem) -> Self {
-        Self {
-            place: Place::File,
-            problem,
-        }
-    }
-
-    /// A fault at byte `at` of the text `bytes`.
-    pub(super) fn in_text(bytes: &[u8], at: usize, problem: ReadProblem) -> Self {
-        Self {
-            place: Place::Line(super::text::line_of(bytes, at)),
-            problem,
-        }
-    }
-
-    /// The fault with the name of the file it is in.
-    pub(super) fn of(self, path: &Path) -> ReadError {
-        ReadError {
-            path: path.to_owned(),
-            place: self.place,
-            problem: self.problem,
-        }
-    }
-}
-
-/// What a user may see of bytes that should have been something else: short and printable.
-pub(super) fn excerpt(text: &[u8]) -> String {
-    const SHOWN: usize = 40;
-    let shown = String::from_utf8_lossy(&text[..text.len().min(SHOWN)]);
-    let mut shown: String = shown.chars().flat_map(char::escape_debug).collect();
-    if text.len() > SHOWN {
-        shown.push('…');
-    }
-    shown
 }

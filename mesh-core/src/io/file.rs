@@ -2,13 +2,15 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
-use super::contents::{unit, Contents, Morphs, Parsed};
-use super::error::{Fault, ReadError, ReadProblem, WriteError};
+use super::contents::{unit, Contents, Morphs};
+use super::document::{Document, Parsed, Unmovable};
+use super::error::{ReadError, ReadProblem, WriteError};
+use super::fault::Fault;
 use super::format::Format;
 use super::save::{check_finite, encode, packed_as_named, write_atomic};
-use super::uvs::CornerUvs;
-use super::{conversion, gltf, gzip, obj, off, ply, stl, xyz};
+use super::{conversion, gzip};
 use crate::{Point3, PolygonSoup, Positions, Vector3};
 
 /// A mesh file in memory, with everything needed to write it back with new positions.
@@ -16,9 +18,9 @@ use crate::{Point3, PolygonSoup, Positions, Vector3};
 pub struct MeshFile {
     path: PathBuf,
     format: Format,
-    bytes: Vec<u8>,
     soup: PolygonSoup,
     contents: Contents,
+    document: Arc<dyn Document>,
     morphs: Morphs,
 }
 
@@ -90,13 +92,13 @@ impl MeshFile {
             true => gzip::unpack(&bytes).map_err(|fault| fault.of(path))?,
             false => bytes,
         };
-        let (format, parsed) = parse(&bytes, path).map_err(|fault| fault.of(path))?;
+        let (format, parsed) = parse(bytes, path).map_err(|fault| fault.of(path))?;
         Ok(Self {
             path: path.to_owned(),
             format,
-            bytes,
             soup: parsed.soup,
             contents: parsed.contents,
+            document: parsed.document.into(),
             morphs: Morphs::Keep,
         })
     }
@@ -133,14 +135,7 @@ impl MeshFile {
 
     /// One unit normal per vertex, if the file has normals; zero where a vertex has none.
     pub fn vertex_normals(&self) -> Option<Vec<Vector3>> {
-        let mut normals = match self.format {
-            Format::Obj => obj::vertex_normals(&self.bytes, &self.soup),
-            Format::Off => off::vertex_normals(&self.bytes, &self.contents),
-            Format::Ply => ply::vertex_normals(&self.bytes, &self.contents),
-            Format::Xyz => xyz::vertex_normals(&self.bytes),
-            Format::Stl => None,
-            Format::Gltf | Format::Glb => gltf::vertex_normals(&self.bytes, &self.path),
-        }?;
+        let mut normals = self.document.vertex_normals(&self.soup)?;
         for n in &mut normals {
             *n = unit(*n).unwrap_or_default();
         }
@@ -159,10 +154,7 @@ impl MeshFile {
     /// # Ok::<(), mesh_core::io::ReadError>(())
     /// ```
     pub fn vertex_scalars(&self, name: &str) -> Option<Vec<f64>> {
-        match self.format {
-            Format::Ply => ply::vertex_scalars(&self.bytes, name).ok().flatten(),
-            _ => None,
-        }
+        self.document.vertex_scalars(name)
     }
 
     /// Writes this file with the vertices at `x`, all or nothing.
@@ -182,22 +174,13 @@ impl MeshFile {
     /// # Errors
     /// What [`Self::write`] would say whatever the positions.
     pub fn check_writable(&self, path: impl AsRef<Path>) -> Result<(), WriteError> {
-        let path = path.as_ref();
-        match self.output_format(path) {
-            format if format == self.format => self.check_places(),
-            _ => Ok(()),
-        }
-    }
-
-    /// Whether every vertex has a place of its own in the file.
-    fn check_places(&self) -> Result<(), WriteError> {
-        if !matches!(self.format, Format::Gltf | Format::Glb) {
+        if !self.keeps_format(path) {
             return Ok(());
         }
-        let found = gltf::find_unmovable(&self.bytes, &self.path, self.morphs);
+        let found = self.document.find_unmovable(self.morphs);
         match found.map_err(|fault| fault.of(&self.path))? {
             None => Ok(()),
-            Some((feature, advice)) => Err(WriteError::Unsupported {
+            Some(Unmovable { feature, advice }) => Err(WriteError::Unsupported {
                 path: self.path.clone(),
                 feature,
                 advice,
@@ -223,7 +206,7 @@ impl MeshFile {
         check_finite(path, x.as_slice())?;
 
         let bytes = match self.output_format(path) {
-            format if format == self.format => self.rewrite(x.as_slice())?,
+            format if format == self.format => self.rewrite(path, x.as_slice())?,
             format => encode(
                 path,
                 format,
@@ -231,7 +214,7 @@ impl MeshFile {
                     positions: x.as_slice().to_vec(),
                     faces: self.soup.faces.clone(),
                 },
-                self.corner_uvs().as_ref(),
+                self.document.corner_uvs(&self.soup).as_ref(),
             )?,
         };
         Ok(packed_as_named(path, bytes))
@@ -247,37 +230,12 @@ impl MeshFile {
         Format::of_extension(path).unwrap_or(self.format)
     }
 
-    fn rewrite(&self, moved: &[Point3]) -> Result<Vec<u8>, WriteError> {
-        let (bytes, contents, rest) = (&self.bytes, &self.contents, &self.soup);
-        let rewritten = match self.format {
-            Format::Obj => Ok(obj::rewrite(bytes, contents, rest, moved)),
-            Format::Off => off::rewrite(bytes, contents, rest, moved),
-            Format::Ply => ply::rewrite(bytes, contents, rest, moved),
-            Format::Stl => stl::rewrite(bytes, rest, moved),
-            Format::Xyz => xyz::rewrite(bytes, rest, moved),
-            Format::Gltf | Format::Glb
-                if moved == rest.positions && self.morphs != Morphs::Drop =>
-            {
-                Ok(bytes.clone())
-            }
-            Format::Gltf | Format::Glb => {
-                self.check_places()?;
-                gltf::rewrite(bytes, &self.path, moved, self.morphs)
-            }
-        };
-        Ok(rewritten.map_err(|fault| fault.of(&self.path))?)
-    }
-
-    /// The texture coordinates that can go into a file of another format.
-    fn corner_uvs(&self) -> Option<CornerUvs> {
-        match self.format {
-            Format::Obj => obj::corner_uvs(&self.bytes),
-            Format::Gltf | Format::Glb => {
-                let uvs = gltf::vertex_uvs(&self.bytes, &self.path)?;
-                Some(CornerUvs::of_vertices(uvs, &self.soup))
-            }
-            Format::Off | Format::Ply | Format::Stl | Format::Xyz => None,
+    fn rewrite(&self, path: &Path, moved: &[Point3]) -> Result<Vec<u8>, WriteError> {
+        if moved != self.soup.positions {
+            self.check_writable(path)?;
         }
+        let rewritten = self.document.rewrite(&self.soup, moved, self.morphs);
+        Ok(rewritten.map_err(|fault| fault.of(&self.path))?)
     }
 
     /// What would be lost if this file were written to `path`, in words; none if all is kept.
@@ -290,24 +248,18 @@ impl MeshFile {
     }
 }
 
-fn parse(bytes: &[u8], path: &Path) -> Result<(Format, Parsed), Fault> {
+fn parse(bytes: Vec<u8>, path: &Path) -> Result<(Format, Parsed), Fault> {
     if bytes.is_empty() {
         return Err(Fault::whole(ReadProblem::Empty));
     }
     let format =
-        Format::detect(bytes, path).ok_or_else(|| Fault::whole(ReadProblem::UnknownFormat))?;
-    let name = format.name();
-    if format.is_text() && bytes.contains(&0) {
+        Format::detect(&bytes, path).ok_or_else(|| Fault::whole(ReadProblem::UnknownFormat))?;
+    let codec = format.codec();
+    let name = codec.name;
+    if codec.is_text && bytes.contains(&0) {
         return Err(Fault::whole(ReadProblem::Binary { format: name }));
     }
-    let parsed = match format {
-        Format::Obj => obj::read(bytes),
-        Format::Off => off::read(bytes),
-        Format::Ply => ply::read(bytes),
-        Format::Stl => stl::read(bytes),
-        Format::Xyz => xyz::read(bytes),
-        Format::Gltf | Format::Glb => gltf::read(bytes, path),
-    }?;
+    let parsed = (codec.read)(bytes, path)?;
     if parsed.soup.positions.is_empty() {
         return Err(Fault::whole(ReadProblem::NoVertices { format: name }));
     }

@@ -7,7 +7,8 @@ use flate2::read::MultiGzDecoder;
 use flate2::write::GzEncoder;
 use flate2::Compression;
 
-use super::error::{Fault, ReadProblem};
+use super::error::ReadProblem;
+use super::fault::Fault;
 
 /// Meshes pack to a tenth or so; what unpacks to more than this many times its size is no mesh.
 const MAX_RATIO: usize = 100;

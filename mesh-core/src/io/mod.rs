@@ -28,7 +28,9 @@
 
 mod contents;
 mod conversion;
+mod document;
 mod error;
+mod fault;
 mod file;
 mod format;
 mod gltf;

@@ -1,12 +1,43 @@
 //! Wavefront OBJ, statement by statement. Written back, only `v` and `vn` lines differ from the source.
 
 use std::collections::BTreeSet;
+use std::path::Path;
 
-use super::contents::{polygon_area_vector, CarriedNormals, Contents, NameRuns, Parsed};
-use super::error::{excerpt, Fault, ReadProblem};
+use super::contents::{polygon_area_vector, CarriedNormals, Contents, Morphs, NameRuns};
+use super::document::{Codec, Document, Geometry, Parsed};
+use super::error::ReadProblem;
+use super::fault::{excerpt, Fault};
 use super::text::{integer, number, push_text, Cursor, Field, Splice};
 use super::uvs::CornerUvs;
 use crate::{Point3, PolygonSoup, Vector3};
+
+pub(super) const CODEC: Codec = Codec {
+    name: "OBJ",
+    extensions: &["obj"],
+    is_text: true,
+    geometry: Geometry::Polygons,
+    has_uvs: true,
+    has_mark: |_| false,
+    has_statement,
+    read,
+    write: |soup, uvs| Ok(write(soup, uvs)),
+};
+
+/// An OBJ file as it was read.
+#[derive(Debug)]
+struct ObjFile {
+    bytes: Vec<u8>,
+}
+
+fn has_statement(bytes: &[u8]) -> bool {
+    let mut line = Cursor::new(bytes);
+    let keyword = line.word().map(|word| word.text);
+    match keyword {
+        Some(b"v") => (0..3).all(|_| line.field().is_some_and(|f| number(f.text).is_some())),
+        Some(b"mtllib" | b"usemtl" | b"o" | b"g" | b"s" | b"vn" | b"vt") => true,
+        _ => false,
+    }
+}
 
 /// A statement: its keyword, with the cursor standing behind it.
 fn next_statement<'a>(cursor: &mut Cursor<'a>, mut on_comment: impl FnMut()) -> Option<Field<'a>> {
@@ -32,9 +63,9 @@ fn each_statement<'a>(bytes: &'a [u8], mut visit: impl FnMut(&[u8], &mut Cursor<
 }
 
 /// Reads a file: vertices and faces in their order, everything else counted.
-pub(super) fn read(bytes: &[u8]) -> Result<Parsed, Fault> {
+fn read(bytes: Vec<u8>, _: &Path) -> Result<Parsed, Fault> {
     let mut reader = Reader::default();
-    let mut cursor = Cursor::new(bytes);
+    let mut cursor = Cursor::new(&bytes);
     let mut n_comments = 0;
     while let Some(keyword) = next_statement(&mut cursor, || n_comments += 1) {
         reader.statement(keyword, &mut cursor)?;
@@ -135,11 +166,11 @@ impl Reader {
         }
     }
 
-    fn finish(mut self, bytes: &[u8]) -> Result<Parsed, Fault> {
+    fn finish(mut self, bytes: Vec<u8>) -> Result<Parsed, Fault> {
         let n_vertices = self.soup.positions.len();
         if let Some((highest, at)) = self.highest.filter(|&(highest, _)| highest >= n_vertices) {
             let problem = out_of_range(highest as i64 + 1, n_vertices);
-            return Err(Fault::in_text(bytes, at, problem));
+            return Err(Fault::in_text(&bytes, at, problem));
         }
         let n_faces = self.soup.faces.len();
         self.contents.objects = self.objects.finish(n_faces);
@@ -149,6 +180,7 @@ impl Reader {
         Ok(Parsed {
             soup: self.soup,
             contents: self.contents,
+            document: Box::new(ObjFile { bytes }),
         })
     }
 }
@@ -198,38 +230,55 @@ impl Corner {
     }
 }
 
-/// The file with the vertices at `moved`: coordinates that did not change keep their text.
-pub(super) fn rewrite(
-    bytes: &[u8],
-    contents: &Contents,
-    rest: &PolygonSoup,
-    moved: &[Point3],
-) -> Vec<u8> {
-    let normals = (contents.n_normals > 0).then(|| carried_normals(bytes, rest, moved));
-    let mut splice = Splice::new(bytes);
-    let (mut vertex, mut normal) = (0, 0);
-    each_statement(bytes, |keyword, cursor| match keyword {
-        b"v" => {
-            let (from, to) = (rest.positions[vertex], moved[vertex]);
-            for axis in 0..3 {
-                let field = cursor
-                    .field()
-                    .filter(|_| from[axis].to_bits() != to[axis].to_bits());
-                if let Some(field) = field {
-                    splice.replace_text(field.range(), to[axis]);
+impl Document for ObjFile {
+    /// The mean of those a vertex's corners name, or row by row in a file of as many normals as vertices and no face.
+    /// Zero where a vertex has none.
+    fn vertex_normals(&self, soup: &PolygonSoup) -> Option<Vec<Vector3>> {
+        let rows = normal_rows(&self.bytes);
+        if soup.faces.is_empty() {
+            return (rows.len() == soup.positions.len()).then_some(rows);
+        }
+        let mut sums = vec![Vector3::zeros(); soup.positions.len()];
+        let mut any = false;
+        each_normal_corner(&self.bytes, |face, corner, normal| {
+            if let Some(n) = rows.get(normal) {
+                sums[soup.faces[face][corner] as usize] += n;
+                any = true;
+            }
+        });
+        any.then_some(sums)
+    }
+
+    fn corner_uvs(&self, _: &PolygonSoup) -> Option<CornerUvs> {
+        corner_uvs(&self.bytes)
+    }
+
+    /// Coordinates that did not change keep their text.
+    fn rewrite(&self, rest: &PolygonSoup, moved: &[Point3], _: Morphs) -> Result<Vec<u8>, Fault> {
+        let normals = carried_normals(&self.bytes, rest, moved);
+        let mut splice = Splice::new(&self.bytes);
+        let (mut vertex, mut normal) = (0, 0);
+        each_statement(&self.bytes, |keyword, cursor| match keyword {
+            b"v" => {
+                let (from, to) = (rest.positions[vertex], moved[vertex]);
+                for axis in 0..3 {
+                    let has_changed = from[axis].to_bits() != to[axis].to_bits();
+                    if let Some(field) = cursor.field().filter(|_| has_changed) {
+                        splice.replace_text(field.range(), to[axis]);
+                    }
                 }
+                vertex += 1;
             }
-            vertex += 1;
-        }
-        b"vn" => {
-            if let Some(n) = normals.as_ref().and_then(|n| n.changed(normal)) {
-                replace_vector(&mut splice, cursor, n);
+            b"vn" => {
+                if let Some(n) = normals.as_ref().and_then(|n| n.changed(normal)) {
+                    replace_vector(&mut splice, cursor, n);
+                }
+                normal += 1;
             }
-            normal += 1;
-        }
-        _ => {}
-    });
-    splice.finish()
+            _ => {}
+        });
+        Ok(splice.finish())
+    }
 }
 
 fn replace_vector(splice: &mut Splice<'_>, cursor: &mut Cursor<'_>, vector: Vector3) {
@@ -240,14 +289,19 @@ fn replace_vector(splice: &mut Splice<'_>, cursor: &mut Cursor<'_>, vector: Vect
     }
 }
 
-fn carried_normals(bytes: &[u8], rest: &PolygonSoup, moved: &[Point3]) -> CarriedNormals {
-    let mut carried = CarriedNormals::new(normal_rows(bytes));
+/// The normals of the file on the new shape; none where it has none.
+fn carried_normals(bytes: &[u8], rest: &PolygonSoup, moved: &[Point3]) -> Option<CarriedNormals> {
+    let rows = normal_rows(bytes);
+    if rows.is_empty() {
+        return None;
+    }
+    let mut carried = CarriedNormals::new(rows);
     each_normal_corner(bytes, |face, _, normal| {
         let corners = &rest.faces[face];
         let areas = [&rest.positions[..], moved].map(|x| polygon_area_vector(x, corners));
         carried.add_corner(normal, areas);
     });
-    carried
+    Some(carried)
 }
 
 /// The values of the `vn` lines; zero where one does not read as three numbers.
@@ -286,26 +340,8 @@ fn each_normal_corner(bytes: &[u8], mut visit: impl FnMut(usize, usize, usize)) 
     });
 }
 
-/// One unit normal per vertex: the mean of those its corners name, or row by row in a file of as many normals as
-/// vertices and no face. Zero where a vertex has none.
-pub(super) fn vertex_normals(bytes: &[u8], soup: &PolygonSoup) -> Option<Vec<Vector3>> {
-    let rows = normal_rows(bytes);
-    if soup.faces.is_empty() {
-        return (rows.len() == soup.positions.len()).then_some(rows);
-    }
-    let mut sums = vec![Vector3::zeros(); soup.positions.len()];
-    let mut any = false;
-    each_normal_corner(bytes, |face, corner, normal| {
-        if let Some(n) = rows.get(normal) {
-            sums[soup.faces[face][corner] as usize] += n;
-            any = true;
-        }
-    });
-    any.then_some(sums)
-}
-
 /// The texture coordinates that corners name; none where no corner does.
-pub(super) fn corner_uvs(bytes: &[u8]) -> Option<CornerUvs> {
+fn corner_uvs(bytes: &[u8]) -> Option<CornerUvs> {
     let mut uvs = CornerUvs {
         rows: Vec::new(),
         faces: Vec::new(),
@@ -331,7 +367,7 @@ pub(super) fn corner_uvs(bytes: &[u8]) -> Option<CornerUvs> {
 }
 
 /// A new file of `soup`.
-pub(super) fn write(soup: &PolygonSoup, uvs: Option<&CornerUvs>) -> Vec<u8> {
+fn write(soup: &PolygonSoup, uvs: Option<&CornerUvs>) -> Vec<u8> {
     let mut out = Vec::with_capacity(64 * soup.positions.len());
     for p in &soup.positions {
         push_text(&mut out, format_args!("v {} {} {}\n", p.x, p.y, p.z));

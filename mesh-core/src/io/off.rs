@@ -1,11 +1,37 @@
 //! Geomview OFF and its kin: COFF, NOFF, STOFF and their combinations. Written back, only coordinates and normals differ.
 
-use super::contents::{polygon_area_vector, CarriedNormals, Contents, Parsed};
-use super::error::{excerpt, Fault, ReadProblem};
-use super::text::{number, push_text, Cursor, Field, Splice};
+use std::path::Path;
+
+use super::contents::{CarriedNormals, Contents, Morphs};
+use super::document::{Codec, Document, Geometry, Parsed};
+use super::error::ReadProblem;
+use super::fault::{excerpt, Fault};
+use super::text::{integer, number, push_text, Cursor, Field, Splice};
 use crate::{Point3, PolygonSoup, Vector3};
 
+pub(super) const CODEC: Codec = Codec {
+    name: "OFF",
+    extensions: &["off", "coff", "noff", "cnoff", "stoff"],
+    is_text: true,
+    geometry: Geometry::Polygons,
+    has_uvs: false,
+    has_mark,
+    has_statement: |_| false,
+    read,
+    write: |soup, _| Ok(write(soup)),
+};
+
+/// An OFF file as it was read.
+#[derive(Debug)]
+struct OffFile {
+    bytes: Vec<u8>,
+    header: Header,
+    /// Where the first vertex may start.
+    body: usize,
+}
+
 /// What the first line promises.
+#[derive(Debug)]
 struct Header {
     has_normals: bool,
     has_colors: bool,
@@ -14,8 +40,13 @@ struct Header {
     n_faces: u64,
 }
 
+fn has_mark(bytes: &[u8]) -> bool {
+    let first = Cursor::new(bytes).word();
+    first.is_some_and(|word| keyword_prefix(word.text).is_some())
+}
+
 /// The letters before `OFF` that a file may start with.
-pub(super) fn keyword_prefix(word: &[u8]) -> Option<&[u8]> {
+fn keyword_prefix(word: &[u8]) -> Option<&[u8]> {
     let at = word.windows(3).position(|w| w == b"OFF")?;
     let letters = &word[..at];
     let known = |b: &u8| matches!(b, b'S' | b'T' | b'C' | b'N' | b'4' | b'n');
@@ -24,9 +55,10 @@ pub(super) fn keyword_prefix(word: &[u8]) -> Option<&[u8]> {
 }
 
 /// Reads a file: vertices and faces in their order.
-pub(super) fn read(bytes: &[u8]) -> Result<Parsed, Fault> {
-    let mut cursor = Cursor::new(bytes);
-    let header = header(bytes, &mut cursor)?;
+fn read(bytes: Vec<u8>, _: &Path) -> Result<Parsed, Fault> {
+    let mut cursor = Cursor::new(&bytes);
+    let header = header(&bytes, &mut cursor)?;
+    let body = cursor.at();
     let mut soup = PolygonSoup {
         positions: Vec::with_capacity(promised(&cursor, "vertices", header.n_vertices, 6)?),
         faces: Vec::new(),
@@ -47,8 +79,13 @@ pub(super) fn read(bytes: &[u8]) -> Result<Parsed, Fault> {
         cursor.next_line();
     }
     Ok(Parsed {
-        contents: contents(bytes, &header),
+        contents: contents(&bytes, &header),
         soup,
+        document: Box::new(OffFile {
+            bytes,
+            header,
+            body,
+        }),
     })
 }
 
@@ -124,7 +161,7 @@ fn face(cursor: &mut Cursor<'_>, n_vertices: usize) -> Result<Vec<u32>, Fault> {
 fn corner(cursor: &Cursor<'_>, field: Option<Field<'_>>, n_vertices: usize) -> Result<u32, Fault> {
     let expected = "the row of a vertex";
     let field = field.ok_or_else(|| cursor.fault(ReadProblem::EndsEarly { expected }))?;
-    let index = super::text::integer(field.text).ok_or_else(|| {
+    let index = integer(field.text).ok_or_else(|| {
         let text = excerpt(field.text);
         cursor.fault_at(field, ReadProblem::Unexpected { expected, text })
     })?;
@@ -164,95 +201,70 @@ fn contents(bytes: &[u8], header: &Header) -> Contents {
     }
 }
 
-/// Calls `visit` with each vertex's row, the cursor standing before its coordinates.
-fn each_vertex<'a>(
-    bytes: &'a [u8],
-    mut visit: impl FnMut(usize, &mut Cursor<'a>),
-) -> Result<(), Fault> {
-    let mut cursor = Cursor::new(bytes);
-    let header = header(bytes, &mut cursor)?;
-    for row in 0..header.n_vertices as usize {
-        visit(row, &mut cursor);
-        cursor.next_line();
-    }
-    Ok(())
-}
-
-/// The file with the vertices at `moved`: coordinates that did not change keep their text.
-pub(super) fn rewrite(
-    bytes: &[u8],
-    contents: &Contents,
-    rest: &PolygonSoup,
-    moved: &[Point3],
-) -> Result<Vec<u8>, Fault> {
-    let normals = match contents.n_normals {
-        0 => None,
-        _ => Some(carried_normals(bytes, rest, moved)?),
-    };
-    let mut splice = Splice::new(bytes);
-    each_vertex(bytes, |row, cursor| {
-        let (from, to) = (rest.positions[row], moved[row]);
-        for axis in 0..3 {
-            let field = cursor
-                .word()
-                .filter(|_| from[axis].to_bits() != to[axis].to_bits());
-            if let Some(field) = field {
-                splice.replace_text(field.range(), to[axis]);
-            }
-        }
-        let Some(n) = normals.as_ref().and_then(|n| n.changed(row)) else {
-            return;
-        };
-        for &coordinate in &n {
-            if let Some(field) = cursor.field() {
-                splice.replace_text(field.range(), coordinate);
-            }
-        }
-    })?;
-    Ok(splice.finish())
-}
-
-fn carried_normals(
-    bytes: &[u8],
-    rest: &PolygonSoup,
-    moved: &[Point3],
-) -> Result<CarriedNormals, Fault> {
-    let mut carried = CarriedNormals::new(normal_rows(bytes)?);
-    for corners in &rest.faces {
-        let areas = [&rest.positions[..], moved].map(|x| polygon_area_vector(x, corners));
-        for &v in corners {
-            carried.add_corner(v as usize, areas);
+impl OffFile {
+    /// Calls `visit` with each vertex's row, the cursor standing before its coordinates.
+    fn each_vertex<'a>(&'a self, mut visit: impl FnMut(usize, &mut Cursor<'a>)) {
+        let mut cursor = Cursor::starting_at(&self.bytes, self.body);
+        for row in 0..self.header.n_vertices as usize {
+            visit(row, &mut cursor);
+            cursor.next_line();
         }
     }
-    Ok(carried)
+
+    fn normal_rows(&self) -> Option<Vec<Vector3>> {
+        if !self.header.has_normals {
+            return None;
+        }
+        let mut rows = Vec::with_capacity(self.header.n_vertices as usize);
+        self.each_vertex(|_, cursor| {
+            for _ in 0..3 {
+                cursor.word();
+            }
+            let mut n = Vector3::zeros();
+            for coordinate in &mut n {
+                let field = cursor.field().and_then(|f| number(f.text));
+                *coordinate = field.filter(|x| x.is_finite()).unwrap_or(0.0);
+            }
+            rows.push(n);
+        });
+        Some(rows)
+    }
 }
 
-fn normal_rows(bytes: &[u8]) -> Result<Vec<Vector3>, Fault> {
-    let mut rows = Vec::new();
-    each_vertex(bytes, |_, cursor| {
-        for _ in 0..3 {
-            cursor.word();
-        }
-        let mut n = Vector3::zeros();
-        for coordinate in &mut n {
-            *coordinate = cursor
-                .field()
-                .and_then(|f| number(f.text))
-                .filter(|x| x.is_finite())
-                .unwrap_or(0.0);
-        }
-        rows.push(n);
-    })?;
-    Ok(rows)
-}
+impl Document for OffFile {
+    fn vertex_normals(&self, _: &PolygonSoup) -> Option<Vec<Vector3>> {
+        self.normal_rows()
+    }
 
-/// The normals of a NOFF file.
-pub(super) fn vertex_normals(bytes: &[u8], contents: &Contents) -> Option<Vec<Vector3>> {
-    (contents.n_normals > 0).then(|| normal_rows(bytes).ok())?
+    /// Coordinates that did not change keep their text.
+    fn rewrite(&self, rest: &PolygonSoup, moved: &[Point3], _: Morphs) -> Result<Vec<u8>, Fault> {
+        let rows = self.normal_rows();
+        let normals = rows.map(|rows| CarriedNormals::of_vertices(rows, rest, moved));
+        let mut splice = Splice::new(&self.bytes);
+        self.each_vertex(|row, cursor| {
+            let (from, to) = (rest.positions[row], moved[row]);
+            for axis in 0..3 {
+                let field = cursor.word();
+                let has_changed = from[axis].to_bits() != to[axis].to_bits();
+                if let Some(field) = field.filter(|_| has_changed) {
+                    splice.replace_text(field.range(), to[axis]);
+                }
+            }
+            let Some(n) = normals.as_ref().and_then(|n| n.changed(row)) else {
+                return;
+            };
+            for &coordinate in &n {
+                if let Some(field) = cursor.field() {
+                    splice.replace_text(field.range(), coordinate);
+                }
+            }
+        });
+        Ok(splice.finish())
+    }
 }
 
 /// A new file of `soup`.
-pub(super) fn write(soup: &PolygonSoup) -> Vec<u8> {
+fn write(soup: &PolygonSoup) -> Vec<u8> {
     let mut out = Vec::with_capacity(64 * soup.positions.len());
     push_text(
         &mut out,

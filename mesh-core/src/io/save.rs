@@ -7,8 +7,8 @@ use std::sync::atomic::{AtomicU32, Ordering};
 
 use super::error::WriteError;
 use super::format::Format;
+use super::gzip;
 use super::uvs::CornerUvs;
-use super::{gltf, gzip, obj, off, ply, stl, xyz};
 use crate::PolygonSoup;
 
 const KNOWN: &str = ".obj, .ply, .off, .stl, .glb, .gltf or .xyz, each perhaps with .gz";
@@ -42,15 +42,7 @@ pub(super) fn encode(
     soup: &PolygonSoup,
     uvs: Option<&CornerUvs>,
 ) -> Result<Vec<u8>, WriteError> {
-    let encoded = match format {
-        Format::Obj => Ok(obj::write(soup, uvs)),
-        Format::Off => Ok(off::write(soup)),
-        Format::Ply => Ok(ply::write(soup)),
-        Format::Xyz => Ok(xyz::write(&soup.positions)),
-        Format::Stl => stl::write(soup),
-        Format::Gltf => gltf::write_gltf(soup, uvs),
-        Format::Glb => gltf::write_glb(soup, uvs),
-    };
+    let encoded = (format.codec().write)(soup, uvs);
     encoded.map_err(|unwritable| unwritable.at(path))
 }
 

@@ -1,24 +1,48 @@
 //! STL, text and binary: triangles with their own corners, welded where they are equal. Written back triangle by
 //! triangle; only corners and facet normals differ.
 
-use super::contents::{polygon_area_vector, unit, Contents, NameRuns, Parsed};
-use super::error::{excerpt, Fault, Place, ReadProblem, Unwritable};
+use std::path::Path;
+
+use super::contents::{polygon_area_vector, unit, Contents, Morphs, NameRuns};
+use super::document::{Codec, Document, Geometry, Parsed};
+use super::error::{Place, ReadProblem};
+use super::fault::{excerpt, Fault, Unwritable};
 use super::text::{number, Cursor, Field, Splice};
 use super::triangles::Triangles;
 use crate::weld::weld_points;
 use crate::{Point3, PolygonSoup, Vector3};
 
+pub(super) const CODEC: Codec = Codec {
+    name: "STL",
+    extensions: &["stl"],
+    is_text: false,
+    geometry: Geometry::SeparateTriangles,
+    has_uvs: false,
+    has_mark: |bytes| is_binary(bytes) || is_text(bytes),
+    has_statement: |_| false,
+    read,
+    write: |soup, _| write(soup),
+};
+
+/// An STL file as it was read.
+#[derive(Debug)]
+struct StlFile {
+    bytes: Vec<u8>,
+    /// The vertex that each corner of the file is, three for each triangle.
+    row_of_corner: Vec<u32>,
+}
+
 const BINARY_HEADER: usize = 84;
 const BINARY_FACET: usize = 50;
 
 /// Whether the length is that of a binary file; even one whose header begins like a text.
-pub(super) fn is_binary(bytes: &[u8]) -> bool {
+fn is_binary(bytes: &[u8]) -> bool {
     n_binary_facets(bytes)
         .is_some_and(|n| BINARY_HEADER as u64 + n * BINARY_FACET as u64 == bytes.len() as u64)
 }
 
 /// Whether this begins like a text file.
-pub(super) fn is_text(bytes: &[u8]) -> bool {
+fn is_text(bytes: &[u8]) -> bool {
     let mut cursor = Cursor::new(bytes);
     let is_solid = cursor
         .word()
@@ -68,16 +92,21 @@ impl Corners {
 }
 
 /// Reads a file: triangles in their order, equal corners as one vertex.
-pub(super) fn read(bytes: &[u8]) -> Result<Parsed, Fault> {
+fn read(bytes: Vec<u8>, _: &Path) -> Result<Parsed, Fault> {
     let mut solids = NameRuns::default();
-    let corners = corners(bytes, &mut solids)?;
+    let corners = corners(&bytes, &mut solids)?;
     let n_faces = corners.faces.len();
+    let (soup, row_of_corner) = corners.welded();
     Ok(Parsed {
-        soup: corners.welded().0,
+        soup,
         contents: Contents {
             objects: solids.finish(n_faces),
             ..Contents::default()
         },
+        document: Box::new(StlFile {
+            bytes,
+            row_of_corner,
+        }),
     })
 }
 
@@ -177,22 +206,23 @@ fn at_facet(row: usize, coordinate: f64) -> Fault {
     }
 }
 
-/// The file with the vertices at `moved`: corners that did not change keep their text or bytes.
-pub(super) fn rewrite(
-    bytes: &[u8],
-    rest: &PolygonSoup,
-    moved: &[Point3],
-) -> Result<Vec<u8>, Fault> {
-    let (_, row_of) = corners(bytes, &mut NameRuns::default())?.welded();
-    let new = New {
-        rest,
-        moved,
-        row_of,
-    };
-    if is_text(bytes) && !is_binary(bytes) {
-        rewrite_text(bytes, &new)
-    } else {
-        rewrite_binary(bytes, &new)
+impl Document for StlFile {
+    fn vertex_normals(&self, _: &PolygonSoup) -> Option<Vec<Vector3>> {
+        None
+    }
+
+    /// Corners that did not change keep their text or bytes.
+    fn rewrite(&self, rest: &PolygonSoup, moved: &[Point3], _: Morphs) -> Result<Vec<u8>, Fault> {
+        let new = New {
+            rest,
+            moved,
+            row_of_corner: &self.row_of_corner,
+        };
+        if is_text(&self.bytes) && !is_binary(&self.bytes) {
+            rewrite_text(&self.bytes, &new)
+        } else {
+            rewrite_binary(&self.bytes, &new)
+        }
     }
 }
 
@@ -200,13 +230,13 @@ pub(super) fn rewrite(
 struct New<'a> {
     rest: &'a PolygonSoup,
     moved: &'a [Point3],
-    row_of: Vec<u32>,
+    row_of_corner: &'a [u32],
 }
 
 impl New<'_> {
     /// Where corner number `corner` of the file is now, along an axis in which it moved.
     fn coordinate(&self, corner: usize, axis: usize) -> Option<f64> {
-        let row = self.row_of[corner] as usize;
+        let row = self.row_of_corner[corner] as usize;
         let (from, to) = (self.rest.positions[row][axis], self.moved[row][axis]);
         (from.to_bits() != to.to_bits()).then_some(to)
     }
@@ -278,7 +308,7 @@ fn rewrite_binary(bytes: &[u8], new: &New<'_>) -> Result<Vec<u8>, Fault> {
 }
 
 /// A new binary file of `soup`.
-pub(super) fn write(soup: &PolygonSoup) -> Result<Vec<u8>, Unwritable> {
+fn write(soup: &PolygonSoup) -> Result<Vec<u8>, Unwritable> {
     let triangles = Triangles::of(soup)?;
     let n = triangles.corners.len();
     let mut out = vec![0; BINARY_HEADER];

@@ -4,7 +4,8 @@ use std::fmt::Display;
 use std::io::Write;
 use std::ops::Range;
 
-use super::error::{excerpt, Fault, ReadProblem};
+use super::error::ReadProblem;
+use super::fault::{excerpt, Fault};
 
 /// A run of bytes between blanks, and where it starts.
 #[derive(Clone, Copy, Debug)]
@@ -41,6 +42,11 @@ impl<'a> Cursor<'a> {
     /// A cursor at byte `at`.
     pub(super) fn starting_at(bytes: &'a [u8], at: usize) -> Self {
         Self { bytes, at }
+    }
+
+    /// The byte it stands before.
+    pub(super) fn at(&self) -> usize {
+        self.at
     }
 
     /// How many bytes are left.
@@ -198,17 +204,6 @@ const fn is_newline(byte: u8) -> bool {
     matches!(byte, b'\n' | b'\r')
 }
 
-/// The line that byte `at` is on, counted from 1.
-pub(super) fn line_of(bytes: &[u8], at: usize) -> usize {
-    let before = &bytes[..at.min(bytes.len())];
-    let line_feeds = before.iter().filter(|&&b| b == b'\n').count();
-    let lone_returns = bytes[..bytes.len().min(at + 1)]
-        .windows(2)
-        .filter(|pair| pair[0] == b'\r' && pair[1] != b'\n')
-        .count();
-    1 + line_feeds + lone_returns
-}
-
 /// The decimal number in `text`, rounded to the nearest `f64`.
 #[inline]
 pub(super) fn number(text: &[u8]) -> Option<f64> {
@@ -327,13 +322,6 @@ mod tests {
         assert_eq!(fields(&mut cursor), ["6"]);
         cursor.next_line();
         assert_eq!((cursor.left(), cursor.field().is_none()), (0, true));
-    }
-
-    #[test]
-    fn lines_are_counted_for_every_line_end() {
-        let text = b"a\nb\r\nc\rd";
-        let lines: Vec<usize> = [0, 2, 5, 7].map(|at| line_of(text, at)).to_vec();
-        assert_eq!(lines, [1, 2, 3, 4]);
     }
 
     #[test]

@@ -1,16 +1,37 @@
 //! Lists of points: one a line, columns between blanks, commas or semicolons. Written back, only the first three
 //! columns differ.
 
-use super::contents::{Contents, Parsed};
-use super::error::Fault;
+use std::path::Path;
+
+use super::contents::{Contents, Morphs};
+use super::document::{Codec, Document, Geometry, Parsed};
+use super::fault::Fault;
 use super::text::{integer, number, push_text, Cursor, Field, Splice};
 use crate::{Point3, PolygonSoup, Vector3};
+
+pub(super) const CODEC: Codec = Codec {
+    name: "XYZ",
+    extensions: &["xyz", "xyzn", "pts", "asc", "csv", "txt"],
+    is_text: true,
+    geometry: Geometry::Points,
+    has_uvs: false,
+    has_mark: |_| false,
+    has_statement: is_points,
+    read,
+    write: |soup, _| Ok(write(&soup.positions)),
+};
+
+/// A list of points as it was read.
+#[derive(Debug)]
+struct PointList {
+    bytes: Vec<u8>,
+}
 
 /// How far the length of a row of three columns may be from 1 for them to be normals: text is rounded.
 const UNIT_TOLERANCE: f64 = 0.02;
 
 /// Whether the first line reads as a point.
-pub(super) fn is_points(bytes: &[u8]) -> bool {
+fn is_points(bytes: &[u8]) -> bool {
     let mut cursor = Cursor::new(bytes);
     let Some(first) = cursor.word() else {
         return false;
@@ -59,9 +80,9 @@ fn is_heading(columns: &[Field<'_>]) -> bool {
 }
 
 /// Reads a file: points in their order.
-pub(super) fn read(bytes: &[u8]) -> Result<Parsed, Fault> {
+fn read(bytes: Vec<u8>, _: &Path) -> Result<Parsed, Fault> {
     let mut soup = PolygonSoup::default();
-    each_point(bytes, |cursor, columns| {
+    each_point(&bytes, |cursor, columns| {
         let mut p = Point3::origin();
         for axis in 0..3 {
             p[axis] = cursor.coordinate(columns.get(axis).copied())?;
@@ -69,18 +90,19 @@ pub(super) fn read(bytes: &[u8]) -> Result<Parsed, Fault> {
         soup.positions.push(p);
         Ok(())
     })?;
-    let n_normals = vertex_normals(bytes).map_or(0, |n| n.len());
+    let n_normals = normals(&bytes).map_or(0, |n| n.len());
     Ok(Parsed {
         soup,
         contents: Contents {
             n_normals,
             ..Contents::default()
         },
+        document: Box::new(PointList { bytes }),
     })
 }
 
 /// The last three of six or more columns, if they have length 1 in every row.
-pub(super) fn vertex_normals(bytes: &[u8]) -> Option<Vec<Vector3>> {
+fn normals(bytes: &[u8]) -> Option<Vec<Vector3>> {
     let mut normals = Vec::new();
     let mut are_unit = true;
     let walked = each_point(bytes, |_, columns| {
@@ -97,29 +119,31 @@ pub(super) fn vertex_normals(bytes: &[u8]) -> Option<Vec<Vector3>> {
     (walked.is_ok() && are_unit && !normals.is_empty()).then_some(normals)
 }
 
-/// The file with the points at `moved`: coordinates that did not change keep their text.
-pub(super) fn rewrite(
-    bytes: &[u8],
-    rest: &PolygonSoup,
-    moved: &[Point3],
-) -> Result<Vec<u8>, Fault> {
-    let mut splice = Splice::new(bytes);
-    let mut row = 0;
-    each_point(bytes, |_, columns| {
-        let (from, to) = (rest.positions[row], moved[row]);
-        for (axis, column) in columns.iter().take(3).enumerate() {
-            if from[axis].to_bits() != to[axis].to_bits() {
-                splice.replace_text(column.range(), to[axis]);
+impl Document for PointList {
+    fn vertex_normals(&self, _: &PolygonSoup) -> Option<Vec<Vector3>> {
+        normals(&self.bytes)
+    }
+
+    /// Coordinates that did not change keep their text.
+    fn rewrite(&self, rest: &PolygonSoup, moved: &[Point3], _: Morphs) -> Result<Vec<u8>, Fault> {
+        let mut splice = Splice::new(&self.bytes);
+        let mut row = 0;
+        each_point(&self.bytes, |_, columns| {
+            let (from, to) = (rest.positions[row], moved[row]);
+            for (axis, column) in columns.iter().take(3).enumerate() {
+                if from[axis].to_bits() != to[axis].to_bits() {
+                    splice.replace_text(column.range(), to[axis]);
+                }
             }
-        }
-        row += 1;
-        Ok(())
-    })?;
-    Ok(splice.finish())
+            row += 1;
+            Ok(())
+        })?;
+        Ok(splice.finish())
+    }
 }
 
 /// A new file of points.
-pub(super) fn write(points: &[Point3]) -> Vec<u8> {
+fn write(points: &[Point3]) -> Vec<u8> {
     let mut out = Vec::with_capacity(48 * points.len());
     for p in points {
         push_text(&mut out, format_args!("{} {} {}\n", p.x, p.y, p.z));

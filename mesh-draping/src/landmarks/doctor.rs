@@ -306,9 +306,9 @@ mod tests {
         assert!(mirrored.contains(&Finding::Mirrored));
 
         let off = findings(|l| l[3].target *= 1.5);
-        assert!(off.iter().any(
-            |f| matches!(f, Finding::OffSurface { landmark, .. } if *landmark == label(3))
-        ));
+        assert!(off
+            .iter()
+            .any(|f| matches!(f, Finding::OffSurface { landmark, .. } if *landmark == label(3))));
 
         let twice = findings(|l| l.push(l[0].clone()));
         let (a, b, on) = (label(0), label(8), Shared::Both);
@@ -322,7 +322,8 @@ mod tests {
     #[test]
     fn a_contradicting_landmark_is_unexpected() {
         let wrong = findings(|l| l[2].target = Point3::from(-l[2].target.coords));
-        let is_it = |f: &Finding| matches!(f, Finding::Unexpected { landmark, .. } if landmark.index == 2);
+        let is_it =
+            |f: &Finding| matches!(f, Finding::Unexpected { landmark, .. } if landmark.index == 2);
         assert!(wrong.iter().any(is_it), "{wrong:?}");
     }
 

@@ -115,8 +115,8 @@ fn place_in_face(
         });
     }
     let sum: f64 = weights.iter().sum();
-    let is_inside = weights.iter().all(|&w| w >= -WEIGHT_TOLERANCE)
-        && (sum - 1.0).abs() <= WEIGHT_TOLERANCE;
+    let is_inside =
+        weights.iter().all(|&w| w >= -WEIGHT_TOLERANCE) && (sum - 1.0).abs() <= WEIGHT_TOLERANCE;
     if !is_inside {
         return Err(LandmarkProblem::Weights { face });
     }

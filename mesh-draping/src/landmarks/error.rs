@@ -93,9 +93,7 @@ pub enum LandmarkProblem {
     #[error("holds no landmark")]
     Empty,
     /// A vertex that is not there.
-    #[error(
-        "{shape} vertex {row} does not exist: the {shape} has {n} vertices, counted from 0"
-    )]
+    #[error("{shape} vertex {row} does not exist: the {shape} has {n} vertices, counted from 0")]
     NoVertex {
         /// Whose vertex.
         shape: Shape,

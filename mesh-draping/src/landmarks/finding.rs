@@ -116,8 +116,12 @@ impl fmt::Display for Shared {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::Both => "are the same",
-            Self::SourceOnly => "start from one place of the source but belong to two of the target",
-            Self::TargetOnly => "belong to one place of the target but start from two of the source",
+            Self::SourceOnly => {
+                "start from one place of the source but belong to two of the target"
+            }
+            Self::TargetOnly => {
+                "belong to one place of the target but start from two of the source"
+            }
         })
     }
 }

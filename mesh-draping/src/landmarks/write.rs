@@ -180,7 +180,11 @@ mod tests {
 
     #[test]
     fn places_in_faces_come_back_to_the_bit() {
-        for soup in [shapes::quad_sphere(3), shapes::prism(5), shapes::icosphere(1)] {
+        for soup in [
+            shapes::quad_sphere(3),
+            shapes::prism(5),
+            shapes::icosphere(1),
+        ] {
             let (source, target) = shapes_of(&soup);
             let triangles = source.triangulation().triangles();
             let landmarks: Vec<Landmark> = triangles

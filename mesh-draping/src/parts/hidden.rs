@@ -147,12 +147,7 @@ pub fn inner_surfaces(source: &Source) -> Vec<InnerSurface> {
     let total: f64 = areas.iter().sum();
     let n = mesh.n_vertices();
     let (mut own, mut hidden) = (VertexData::new(n, 0.0), VertexData::new(n, 0.0));
-    for ((t, area), &seen) in triangulation
-        .triangles()
-        .iter()
-        .zip(&areas)
-        .zip(&is_seen)
-    {
+    for ((t, area), &seen) in triangulation.triangles().iter().zip(&areas).zip(&is_seen) {
         for &v in t {
             own[v] += area / 3.0;
             hidden[v] += if seen { 0.0 } else { area / 3.0 };

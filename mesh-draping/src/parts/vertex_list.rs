@@ -9,10 +9,7 @@ use super::error::{LineProblem, PartProblem};
 use crate::Source;
 
 /// The vertices that a file lists by their rows.
-pub(super) fn read_vertices(
-    path: &Path,
-    source: &Source,
-) -> Result<VertexData<bool>, PartProblem> {
+pub(super) fn read_vertices(path: &Path, source: &Source) -> Result<VertexData<bool>, PartProblem> {
     let text = fs::read_to_string(path).map_err(PartProblem::Io)?;
     let mut part = VertexData::new(source.rest().len(), false);
     for (line, words) in numbered_lines(&text) {

@@ -139,10 +139,12 @@ fn percent_of_side(share: f64) -> String {
     format!("{} % of the target's longest side", share * 100.0)
 }
 
-fn figures_of<'c>(pictures: impl IntoIterator<Item = (&'c str, Image)>) -> Result<String, RenderError> {
-    let figures = pictures.into_iter().map(|(caption, image)| {
-        Ok(figure(&image.data_uri()?, caption))
-    });
+fn figures_of<'c>(
+    pictures: impl IntoIterator<Item = (&'c str, Image)>,
+) -> Result<String, RenderError> {
+    let figures = pictures
+        .into_iter()
+        .map(|(caption, image)| Ok(figure(&image.data_uri()?, caption)));
     figures.collect()
 }
 

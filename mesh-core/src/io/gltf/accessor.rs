@@ -2,14 +2,15 @@
 
 use std::collections::{BTreeMap, HashMap};
 use std::hash::{Hash, Hasher};
-use std::rc::Rc;
+use std::sync::Arc;
 
 use gltf::json::accessor::{ComponentType, Type};
 use gltf::json::validation::Checked;
 use gltf::json::{buffer, Index};
 
 use super::container::Container;
-use crate::io::error::{Fault, Place, ReadProblem};
+use crate::io::error::{Place, ReadProblem};
+use crate::io::fault::Fault;
 
 /// Where the elements of an accessor stand.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -34,21 +35,21 @@ impl Hash for Layout {
 #[derive(Default)]
 pub(super) struct Layouts {
     row_of_accessor: HashMap<usize, usize>,
-    row_of: HashMap<Rc<Layout>, usize>,
-    all: Vec<Rc<Layout>>,
+    row_of: HashMap<Arc<Layout>, usize>,
+    all: Vec<Arc<Layout>>,
 }
 
 impl Layouts {
     /// The layout of accessor number `k`, and its row among the different ones.
     pub(super) fn of(
         &mut self,
-        container: &Container<'_>,
+        container: &Container,
         k: usize,
-    ) -> Result<(Rc<Layout>, usize), Fault> {
+    ) -> Result<(Arc<Layout>, usize), Fault> {
         let row = match self.row_of_accessor.get(&k) {
             Some(&row) => row,
             None => {
-                let layout = Rc::new(Layout::of(container, k)?);
+                let layout = Arc::new(Layout::of(container, k)?);
                 let row = *self.row_of.entry(layout.clone()).or_insert(self.all.len());
                 if row == self.all.len() {
                     self.all.push(layout);
@@ -75,7 +76,7 @@ fn broken(accessor: usize, expected: &'static str) -> Fault {
 
 impl Layout {
     /// The layout of accessor number `k`, all of it inside its buffers.
-    pub(super) fn of(container: &Container<'_>, k: usize) -> Result<Self, Fault> {
+    pub(super) fn of(container: &Container, k: usize) -> Result<Self, Fault> {
         let expected = "an accessor of numbers";
         let accessor = container
             .root
@@ -110,7 +111,7 @@ impl Layout {
 
     fn sparse_places(
         &self,
-        container: &Container<'_>,
+        container: &Container,
         sparse: &gltf::json::accessor::sparse::Sparse,
     ) -> Option<BTreeMap<usize, (usize, usize)>> {
         let n = usize::try_from(sparse.count.0)
@@ -137,9 +138,8 @@ impl Layout {
         )?;
         let mut places = BTreeMap::new();
         for k in 0..n {
-            let raw = container.buffers[at.0]
-                .get(at.1 + k * at.2..)?
-                .get(..size)?;
+            let start = at.1 + k * at.2;
+            let raw = container.buffer(at.0)?.get(start..start + size)?;
             let index = decode(component.0, false, raw) as usize;
             if index >= self.count {
                 return None;
@@ -181,12 +181,13 @@ impl Layout {
     }
 
     /// The first `N` components of element `row`.
-    pub(super) fn get<const N: usize>(&self, container: &Container<'_>, row: usize) -> [f64; N] {
+    pub(super) fn get<const N: usize>(&self, container: &Container, row: usize) -> [f64; N] {
         let mut values = [0.0; N];
         let Some((buffer, at)) = self.slot(row) else {
             return values;
         };
-        let raw = &container.buffers[buffer][at..at + self.size()];
+        let raw = container.buffer(buffer).unwrap_or_default();
+        let raw = &raw[at..at + self.size()];
         let size = component_size(self.component);
         for (value, raw) in values.iter_mut().zip(raw.chunks_exact(size)) {
             *value = decode(self.component, self.is_normalized, raw);
@@ -212,7 +213,7 @@ impl Layout {
 }
 
 /// A count that the data of the whole file could hold, even if this accessor only implies zeros.
-fn check_count(container: &Container<'_>, accessor: usize, count: u64) -> Result<usize, Fault> {
+fn check_count(container: &Container, accessor: usize, count: u64) -> Result<usize, Fault> {
     let bytes = container.n_bytes();
     if count > bytes as u64 {
         let element = "elements".to_owned();
@@ -230,7 +231,7 @@ fn check_count(container: &Container<'_>, accessor: usize, count: u64) -> Result
 
 /// Buffer, first byte and stride of `count` elements of `size` bytes, if all of them are there.
 fn place(
-    container: &Container<'_>,
+    container: &Container,
     view: Index<buffer::View>,
     offset: u64,
     count: usize,
@@ -247,7 +248,7 @@ fn place(
     };
     let start = usize::try_from(view.byte_offset.map_or(0, |o| o.0)).ok()?;
     let is_inside = in_view.checked_add(used)? <= length
-        && start.checked_add(length)? <= container.buffers.get(buffer)?.len();
+        && start.checked_add(length)? <= container.buffer(buffer)?.len();
     // Elements that overlap each other could not be written.
     (is_inside && stride >= size).then_some((buffer, start + in_view, stride))
 }

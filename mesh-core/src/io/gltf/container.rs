@@ -1,6 +1,5 @@
 //! The parts of a glTF or GLB file: the JSON document and the buffers it names.
 
-use std::borrow::Cow;
 use std::collections::HashSet;
 use std::ops::Range;
 use std::path::{Component, Path, PathBuf};
@@ -9,23 +8,31 @@ use base64::engine::general_purpose::STANDARD;
 use base64::Engine;
 use gltf::json::Root;
 
-use super::accessor::Layout;
-use super::json_spans::{items, member, root};
-use super::prune::Edit;
-use crate::io::error::{excerpt, Fault, ReadProblem};
+use super::json_spans::{edited, items, member, root, Edit};
+use crate::io::error::ReadProblem;
+use crate::io::fault::{excerpt, Fault};
 
 const MAGIC: &[u8] = b"glTF";
 const HEADER: usize = 12;
 const CHUNK_HEADER: usize = 8;
 
 /// A file taken apart.
-pub(super) struct Container<'a> {
-    bytes: &'a [u8],
+#[derive(Debug)]
+pub(super) struct Container {
+    path: PathBuf,
+    bytes: Vec<u8>,
     json: Range<usize>,
     pub(super) root: Root,
-    pub(super) buffers: Vec<Cow<'a, [u8]>>,
-    /// Where the binary chunk is, if the first buffer lives there.
-    chunk: Option<Range<usize>>,
+    buffers: Vec<Buffer>,
+}
+
+/// Where the bytes of a buffer are.
+#[derive(Debug)]
+enum Buffer {
+    /// In the file itself: its binary chunk, or nowhere.
+    Chunk(Range<usize>),
+    /// In another file or in the text of the document.
+    Loaded(Vec<u8>),
 }
 
 /// Whether the file is a GLB.
@@ -33,43 +40,52 @@ pub(in crate::io) fn is_glb(bytes: &[u8]) -> bool {
     bytes.starts_with(MAGIC)
 }
 
-impl<'a> Container<'a> {
+impl Container {
     /// Takes apart the content of the file called `path`; buffers in other files are read from its folder.
-    pub(super) fn read(bytes: &'a [u8], path: &Path) -> Result<Self, Fault> {
-        let (json, chunk) = if is_glb(bytes) {
-            chunks(bytes)?
+    pub(super) fn read(bytes: Vec<u8>, path: &Path) -> Result<Self, Fault> {
+        let (json, chunk) = if is_glb(&bytes) {
+            chunks(&bytes)?
         } else {
             (0..bytes.len(), None)
         };
         let root = Root::from_slice(&bytes[json.clone()])
             .map_err(|e| Fault::whole(ReadProblem::Json(e.to_string())))?;
         check_extensions(&root)?;
-        let mut container = Self {
+        Ok(Self {
+            path: path.to_owned(),
+            buffers: buffers(&root, chunk, path)?,
             bytes,
             json,
             root,
-            buffers: Vec::new(),
-            chunk: None,
-        };
-        let mut files = HashSet::new();
-        for (k, buffer) in container.root.buffers.iter().enumerate() {
-            // One large file, named often enough, would fill any memory.
-            let file = buffer.uri.as_deref().and_then(file_named);
-            if let Some(file) = file.filter(|file| !files.insert(file.clone())) {
-                let feature = format!("two buffers of the one file `{}`", file.display());
-                return Err(unsupported(feature, "save the file as GLB"));
-            }
-            let data = match (&buffer.uri, &chunk) {
-                (Some(uri), _) => Cow::Owned(load(uri, path)?),
-                (None, Some(chunk)) if k == 0 => {
-                    container.chunk = Some(chunk.clone());
-                    Cow::Borrowed(&bytes[chunk.clone()])
-                }
-                (None, _) => Cow::Borrowed(&bytes[..0]),
-            };
-            container.buffers.push(data);
-        }
-        Ok(container)
+        })
+    }
+
+    /// The path it was read from.
+    pub(super) fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// All bytes of the file.
+    pub(super) fn bytes(&self) -> &[u8] {
+        &self.bytes
+    }
+
+    /// The same without what was found in them.
+    pub(super) fn into_bytes(self) -> Vec<u8> {
+        self.bytes
+    }
+
+    /// The bytes of buffer number `k`, if the document has so many.
+    pub(super) fn buffer(&self, k: usize) -> Option<&[u8]> {
+        self.buffers.get(k).map(|buffer| match buffer {
+            Buffer::Chunk(range) => &self.bytes[range.clone()],
+            Buffer::Loaded(bytes) => bytes,
+        })
+    }
+
+    /// The bytes of all buffers.
+    pub(super) fn buffers(&self) -> impl Iterator<Item = &[u8]> {
+        (0..self.buffers.len()).filter_map(|k| self.buffer(k))
     }
 
     /// The text of the document.
@@ -79,57 +95,28 @@ impl<'a> Container<'a> {
 
     /// All bytes there are for data.
     pub(super) fn n_bytes(&self) -> usize {
-        self.bytes.len() + self.buffers.iter().map(|b| b.len()).sum::<usize>()
+        self.bytes.len() + self.buffers().map(<[u8]>::len).sum::<usize>()
     }
 
-    /// The file with new data in its buffers, and with `min` and `max` of some accessors replaced. The text of buffers
-    /// that live elsewhere moves into the document.
-    pub(super) fn with(
-        &self,
-        buffers: &[Option<Vec<u8>>],
-        bounds: &[Bounds],
-        mut edits: Vec<Edit>,
-    ) -> Vec<u8> {
+    /// The file with new data in its buffers and with some pieces of the document replaced. The text of buffers that
+    /// live elsewhere moves into the document.
+    pub(super) fn with(&self, buffers: &[Option<Vec<u8>>], mut edits: Vec<Edit>) -> Vec<u8> {
         let json = self.json();
-        edits.extend(self.bounds_edits(json, bounds));
-        let uris = self.array(json, "buffers");
-        for (k, data) in buffers.iter().enumerate() {
-            let uri = uris
-                .get(k)
-                .and_then(|object| member(json, object.clone(), "uri"));
-            if let (Some(data), Some(uri)) = (data, uri) {
-                let text = format!(
-                    "\"data:application/octet-stream;base64,{}\"",
-                    STANDARD.encode(data)
-                );
+        let objects =
+            member(json, root(json), "buffers").map_or_else(Vec::new, |all| items(json, all));
+        for (data, object) in buffers.iter().zip(objects) {
+            if let Some((data, uri)) = data.as_ref().zip(member(json, object, "uri")) {
+                let data = STANDARD.encode(data);
+                let text = format!("\"data:application/octet-stream;base64,{data}\"");
                 edits.push((uri, text));
             }
         }
         let json = edited(json, edits);
-        let chunk = buffers.first().and_then(Option::as_deref);
-        if is_glb(self.bytes) {
-            self.glb(json, chunk)
+        if is_glb(&self.bytes) {
+            self.glb(json, buffers.first().and_then(Option::as_deref))
         } else {
             json
         }
-    }
-
-    fn array(&self, json: &[u8], key: &str) -> Vec<Range<usize>> {
-        member(json, root(json), key).map_or_else(Vec::new, |array| items(json, array))
-    }
-
-    fn bounds_edits(&self, json: &[u8], bounds: &[Bounds]) -> Vec<Edit> {
-        let accessors = self.array(json, "accessors");
-        let mut edits = Vec::new();
-        for bound in bounds {
-            for (key, [x, y, z]) in [("min", bound.min), ("max", bound.max)] {
-                let object = accessors.get(bound.accessor).cloned();
-                if let Some(span) = object.and_then(|object| member(json, object, key)) {
-                    edits.push((span, format!("[{x},{y},{z}]")));
-                }
-            }
-        }
-        edits
     }
 
     fn glb(&self, mut json: Vec<u8>, chunk: Option<&[u8]>) -> Vec<u8> {
@@ -141,55 +128,19 @@ impl<'a> Container<'a> {
         let mut out = Vec::with_capacity(length);
         out.extend_from_slice(&self.bytes[..8]);
         // What follows the stated length of the file stays behind it.
-        let stated = u32_at(self.bytes, 8) as usize - self.json.len() + json.len();
+        let stated = u32_at(&self.bytes, 8) as usize - self.json.len() + json.len();
         out.extend_from_slice(&(stated as u32).to_le_bytes());
         out.extend_from_slice(&(json.len() as u32).to_le_bytes());
         out.extend_from_slice(&self.bytes[HEADER + 4..self.json.start]);
         out.extend_from_slice(&json);
         let behind = out.len();
         out.extend_from_slice(&self.bytes[self.json.end..]);
-        if let (Some(data), Some(place)) = (chunk, &self.chunk) {
+        if let (Some(data), Some(Buffer::Chunk(place))) = (chunk, self.buffers.first()) {
             let start = behind + place.start - self.json.end;
             out[start..start + data.len()].copy_from_slice(data);
         }
         out
     }
-}
-
-/// The smallest and largest coordinates of an accessor.
-pub(super) struct Bounds {
-    pub(super) accessor: usize,
-    pub(super) min: [f32; 3],
-    pub(super) max: [f32; 3],
-}
-
-impl Bounds {
-    /// Those of all elements as they now stand in `buffers`; elements that are implied are zero.
-    pub(super) fn of(accessor: usize, layout: &Layout, buffers: &[Vec<u8>]) -> Self {
-        let (mut min, mut max) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
-        for row in 0..layout.count {
-            let values = match layout.slot(row) {
-                None => [0.0; 3],
-                Some((buffer, at)) => {
-                    let raw = buffers[buffer][at..at + 12].as_chunks().0;
-                    [0, 1, 2].map(|axis| f32::from_le_bytes(raw[axis]))
-                }
-            };
-            for (axis, c) in values.into_iter().enumerate() {
-                (min[axis], max[axis]) = (min[axis].min(c), max[axis].max(c));
-            }
-        }
-        Self { accessor, min, max }
-    }
-}
-
-fn edited(json: &[u8], mut edits: Vec<Edit>) -> Vec<u8> {
-    edits.sort_by_key(|(span, _)| span.start);
-    let mut splice = crate::io::text::Splice::new(json);
-    for (span, text) in edits {
-        splice.replace(span, text.as_bytes());
-    }
-    splice.finish()
 }
 
 fn u32_at(bytes: &[u8], at: usize) -> u32 {
@@ -247,6 +198,26 @@ fn check_extensions(root: &Root) -> Result<(), Fault> {
             "save it without mesh compression",
         )),
     }
+}
+
+/// The buffers that the document names; the first may be the binary chunk of the file.
+fn buffers(root: &Root, chunk: Option<Range<usize>>, path: &Path) -> Result<Vec<Buffer>, Fault> {
+    let mut files = HashSet::new();
+    let mut buffers = Vec::with_capacity(root.buffers.len());
+    for buffer in &root.buffers {
+        // One large file, named often enough, would fill any memory.
+        let file = buffer.uri.as_deref().and_then(file_named);
+        if let Some(file) = file.filter(|file| !files.insert(file.clone())) {
+            let feature = format!("two buffers of the one file `{}`", file.display());
+            return Err(unsupported(feature, "save the file as GLB"));
+        }
+        buffers.push(match &buffer.uri {
+            Some(uri) => Buffer::Loaded(load(uri, path)?),
+            None if buffers.is_empty() => Buffer::Chunk(chunk.clone().unwrap_or_default()),
+            None => Buffer::Chunk(0..0),
+        });
+    }
+    Ok(buffers)
 }
 
 fn load(uri: &str, path: &Path) -> Result<Vec<u8>, Fault> {

@@ -3,6 +3,21 @@
 
 use std::ops::Range;
 
+use crate::io::text::Splice;
+
+/// A piece of text and what replaces it.
+pub(super) type Edit = (Range<usize>, String);
+
+/// The text with `edits`, which do not overlap.
+pub(super) fn edited(json: &[u8], mut edits: Vec<Edit>) -> Vec<u8> {
+    edits.sort_by_key(|(span, _)| span.start);
+    let mut splice = Splice::new(json);
+    for (span, text) in edits {
+        splice.replace(span, text.as_bytes());
+    }
+    splice.finish()
+}
+
 /// The values of the array that `array` spans.
 pub(super) fn items(json: &[u8], array: Range<usize>) -> Vec<Range<usize>> {
     let mut spans = Vec::new();

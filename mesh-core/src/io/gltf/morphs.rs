@@ -3,50 +3,28 @@
 use std::collections::hash_map::Entry;
 use std::collections::{HashMap, HashSet};
 
-use gltf::json::mesh::Primitive;
 use nalgebra::Matrix3;
 
 use super::accessor::{Layout, Layouts};
-use super::container::{Bounds, Container};
+use super::bounds::Bounds;
+use super::container::Container;
 use super::gradient::gradients;
-use super::scene::{Block, Scene};
+use super::scene::{not_finite, Block, Displaced};
 use crate::io::contents::unit;
-use crate::io::error::{Fault, Place, ReadProblem};
-use crate::{Point3, Vector3};
-
-/// What a morph target displaces.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub(super) enum Displaced {
-    Position,
-    Normal,
-    Tangent,
-}
-
-/// The accessors in which the morph targets of a primitive keep displacements.
-pub(super) fn displacements(
-    primitive: &Primitive,
-) -> impl Iterator<Item = (Displaced, usize)> + '_ {
-    primitive.targets.iter().flatten().flat_map(|target| {
-        [
-            (Displaced::Position, target.positions),
-            (Displaced::Normal, target.normals),
-            (Displaced::Tangent, target.tangents),
-        ]
-        .into_iter()
-        .filter_map(|(displaced, accessor)| Some((displaced, accessor?.value())))
-    })
-}
+use crate::io::document::Unmovable;
+use crate::io::fault::Fault;
+use crate::{Point3, PolygonSoup, Vector3};
 
 /// The block, the row in it and what is displaced there.
 type Use = (usize, usize, Displaced);
 
 /// What keeps the morph targets from being carried, and what to do about it.
 pub(super) fn find_uncarriable(
-    container: &Container<'_>,
-    scene: &Scene,
-) -> Result<Option<(&'static str, &'static str)>, Fault> {
+    container: &Container,
+    blocks: &[Block],
+) -> Result<Option<Unmovable>, Fault> {
     let mut taken: HashMap<(usize, usize), Option<Use>> = HashMap::new();
-    for block in &scene.blocks {
+    for block in blocks {
         let own = [
             Some(&block.positions),
             block.normals.as_ref(),
@@ -59,7 +37,7 @@ pub(super) fn find_uncarriable(
         }
     }
     let mut layouts = Layouts::default();
-    for (k, block) in scene.blocks.iter().enumerate() {
+    for (k, block) in blocks.iter().enumerate() {
         let mut seen = HashSet::new();
         for &(displaced, accessor) in &block.displacements {
             let (layout, layout_row) = layouts.of(container, accessor)?;
@@ -67,10 +45,10 @@ pub(super) fn find_uncarriable(
                 continue;
             }
             if !layout.is_float() || !layout.has_components(3) || layout.count != block.rows.len() {
-                return Ok(Some((
-                    "a mesh with quantised or incomplete morph targets",
-                    "export them as plain floats, or use --morphs keep",
-                )));
+                return Ok(Some(Unmovable {
+                    feature: "a mesh with quantised or incomplete morph targets",
+                    advice: "export them as plain floats, or use --morphs keep",
+                }));
             }
             for row in layout.rows() {
                 let Some(slot) = layout.slot(row) else {
@@ -78,10 +56,10 @@ pub(super) fn find_uncarriable(
                 };
                 let use_here = Some((k, row, displaced));
                 if *taken.entry(slot).or_insert(use_here) != use_here {
-                    return Ok(Some((
-                        "a morph target that shares its numbers with another mesh",
-                        "export each mesh with its own, or use --morphs keep",
-                    )));
+                    return Ok(Some(Unmovable {
+                        feature: "a morph target that shares its numbers with another mesh",
+                        advice: "export each mesh with its own, or use --morphs keep",
+                    }));
                 }
             }
         }
@@ -95,14 +73,15 @@ pub(super) fn find_uncarriable(
 /// morphed and not, each sent through `J⁻ᵀ`; a tangent's likewise through J. Where nothing moved, bytes stay.
 pub(super) fn carry(
     buffers: &mut [Vec<u8>],
-    container: &Container<'_>,
-    scene: &Scene,
+    container: &Container,
+    blocks: &[Block],
+    rest: &PolygonSoup,
     moved: &[Point3],
 ) -> Result<Vec<Bounds>, Fault> {
-    let maps = gradients(&scene.soup, moved);
+    let maps = gradients(rest, moved);
     let mut bounds = Vec::new();
     let mut layouts = Layouts::default();
-    for block in &scene.blocks {
+    for block in blocks {
         let mut has_changed = HashMap::new();
         for &(displaced, accessor) in &block.displacements {
             let (layout, layout_row) = layouts.of(container, accessor)?;
@@ -114,7 +93,7 @@ pub(super) fn carry(
                         carried(container, block, row, displaced, map, displacement)
                     };
                     let put = put_each(buffers, container, &layout, carry);
-                    *unknown.insert(put.map_err(|to| not_finite(accessor, to))?)
+                    *unknown.insert(put.map_err(|to| not_finite("accessor", accessor, to))?)
                 }
             };
             if has_changed && displaced == Displaced::Position {
@@ -128,7 +107,7 @@ pub(super) fn carry(
 /// Puts the new vector of each row that has one; whether any has. A vector too large for its place is given back.
 fn put_each(
     buffers: &mut [Vec<u8>],
-    container: &Container<'_>,
+    container: &Container,
     layout: &Layout,
     new: impl Fn(usize, Vector3) -> Option<Vector3>,
 ) -> Result<bool, Vector3> {
@@ -146,21 +125,9 @@ fn put_each(
     Ok(any)
 }
 
-fn not_finite(accessor: usize, displacement: Vector3) -> Fault {
-    Fault {
-        place: Place::Row {
-            element: "accessor".to_owned(),
-            row: accessor,
-        },
-        problem: ReadProblem::NotFinite {
-            text: format!("{} {} {}", displacement.x, displacement.y, displacement.z),
-        },
-    }
-}
-
 /// One displacement in the frame of its mesh, sent through `map`, which is in that of the scene; none where it is zero.
 fn carried(
-    container: &Container<'_>,
+    container: &Container,
     block: &Block,
     row: usize,
     displaced: Displaced,

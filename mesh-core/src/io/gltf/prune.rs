@@ -2,10 +2,7 @@
 
 use std::ops::Range;
 
-use super::json_spans::{entry, items, member, root};
-
-/// A piece of text and what replaces it.
-pub(super) type Edit = (Range<usize>, String);
+use super::json_spans::{entry, items, member, root, Edit};
 
 /// What to change for the document to have no morph targets: those of the meshes go, the weights of meshes and nodes,
 /// and the channels that animate them. Accessors and buffers stay, so that every number in the document stays right.
@@ -91,16 +88,12 @@ fn text(json: &[u8], span: Range<usize>) -> String {
 
 #[cfg(test)]
 mod tests {
+    use super::super::json_spans::edited;
     use super::*;
 
     fn pruned(json: &str) -> String {
-        let mut edits = without_morphs(json.as_bytes());
-        edits.sort_by_key(|(span, _)| span.start);
-        let mut splice = crate::io::text::Splice::new(json.as_bytes());
-        for (span, text) in edits {
-            splice.replace(span, text.as_bytes());
-        }
-        String::from_utf8(splice.finish()).unwrap()
+        let edits = without_morphs(json.as_bytes());
+        String::from_utf8(edited(json.as_bytes(), edits)).unwrap()
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::ops::Range;
-use std::rc::Rc;
+use std::sync::Arc;
 
 use gltf::json::mesh::{Mesh, Mode, Primitive, Semantic};
 use gltf::json::scene::Node;
@@ -11,19 +11,41 @@ use nalgebra::{Matrix4, Quaternion, UnitQuaternion};
 
 use super::accessor::{Layout, Layouts};
 use super::container::{unsupported, Container};
-use super::morphs::{displacements, Displaced};
 use crate::io::contents::{Contents, NamedFaces};
-use crate::io::error::{Fault, Place, ReadProblem};
+use crate::io::error::{Place, ReadProblem};
+use crate::io::fault::Fault;
 use crate::{Point3, PolygonSoup, Vector3};
 
+/// What a morph target displaces.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub(super) enum Displaced {
+    Position,
+    Normal,
+    Tangent,
+}
+
+/// The accessors in which the morph targets of a primitive keep displacements.
+fn displacements(primitive: &Primitive) -> impl Iterator<Item = (Displaced, usize)> + '_ {
+    primitive.targets.iter().flatten().flat_map(|target| {
+        [
+            (Displaced::Position, target.positions),
+            (Displaced::Normal, target.normals),
+            (Displaced::Tangent, target.tangents),
+        ]
+        .into_iter()
+        .filter_map(|(displaced, accessor)| Some((displaced, accessor?.value())))
+    })
+}
+
 /// The positions of one accessor in one node, and all that moves with them.
+#[derive(Debug)]
 pub(super) struct Block {
     /// Accessors that read these very numbers.
     pub(super) accessors: BTreeSet<usize>,
-    pub(super) positions: Rc<Layout>,
-    pub(super) normals: Option<Rc<Layout>>,
-    pub(super) tangents: Option<Rc<Layout>>,
-    pub(super) uvs: Option<Rc<Layout>>,
+    pub(super) positions: Arc<Layout>,
+    pub(super) normals: Option<Arc<Layout>>,
+    pub(super) tangents: Option<Arc<Layout>>,
+    pub(super) uvs: Option<Arc<Layout>>,
     /// The accessors with displacements of morph targets.
     pub(super) displacements: BTreeSet<(Displaced, usize)>,
     /// Whether primitives read these positions with other normals or tangents: only one set of them is seen.
@@ -50,7 +72,7 @@ pub(super) struct Scene {
 }
 
 impl Scene {
-    pub(super) fn read(container: &Container<'_>) -> Result<Self, Fault> {
+    pub(super) fn read(container: &Container) -> Result<Self, Fault> {
         let mut scene = Self::default();
         let mut known = Known::default();
         let mut names = Names::default();
@@ -99,7 +121,7 @@ impl Scene {
 
     fn add_primitive(
         &mut self,
-        container: &Container<'_>,
+        container: &Container,
         primitive: &Primitive,
         (node, to_scene): (Option<usize>, Option<Matrix4<f64>>),
         known: &mut Known,
@@ -121,7 +143,7 @@ impl Scene {
         };
         known.blocks.insert((node, layout), block);
         let n_rows = self.blocks[block].rows.len();
-        let mut vector = |semantic, n| -> Result<Option<Rc<Layout>>, Fault> {
+        let mut vector = |semantic, n| -> Result<Option<Arc<Layout>>, Fault> {
             let layout = attribute(semantic).map(|a| known.layouts.of(container, a));
             let layout = layout.transpose()?.map(|(layout, _)| layout);
             Ok(layout.filter(|l| l.has_components(n) && l.count == n_rows))
@@ -145,7 +167,7 @@ impl Scene {
             self.contents.n_colors += count(has_colors.is_some());
             self.contents.n_normals += count(normals.is_some());
         }
-        let differs = |own: &Option<Rc<Layout>>, new: &Option<Rc<Layout>>| {
+        let differs = |own: &Option<Arc<Layout>>, new: &Option<Arc<Layout>>| {
             own.as_ref().zip(new.as_ref()).is_some_and(|(a, b)| a != b)
         };
         block.has_others |=
@@ -159,8 +181,8 @@ impl Scene {
 
     fn add_block(
         &mut self,
-        container: &Container<'_>,
-        positions: Rc<Layout>,
+        container: &Container,
+        positions: Arc<Layout>,
         to_scene: Option<Matrix4<f64>>,
     ) -> Result<usize, Fault> {
         if !positions.has_components(3) {
@@ -175,15 +197,7 @@ impl Scene {
             let local = Point3::from(positions.get::<3>(container, row));
             let p = to_scene.map_or(local, |m| m.transform_point(&local));
             if !p.iter().all(|c| c.is_finite()) {
-                return Err(Fault {
-                    place: Place::Row {
-                        element: "vertex".to_owned(),
-                        row: first + row,
-                    },
-                    problem: ReadProblem::NotFinite {
-                        text: format!("{} {} {}", p.x, p.y, p.z),
-                    },
-                });
+                return Err(not_finite("vertex", first + row, p.coords));
             }
             self.soup.positions.push(p);
         }
@@ -202,7 +216,7 @@ impl Scene {
     }
 
     /// A file that shows one mesh many times could ask for any size.
-    fn check_size(&self, container: &Container<'_>, n_more: usize) -> Result<(), Fault> {
+    fn check_size(&self, container: &Container, n_more: usize) -> Result<(), Fault> {
         let most = container.n_bytes().saturating_mul(4).max(1 << 22);
         if self.soup.positions.len() + self.soup.faces.len() + n_more <= most {
             return Ok(());
@@ -213,7 +227,7 @@ impl Scene {
 
     fn add_faces(
         &mut self,
-        container: &Container<'_>,
+        container: &Container,
         primitive: &Primitive,
         rows: Range<usize>,
     ) -> Result<(), Fault> {
@@ -283,6 +297,19 @@ impl Names {
     }
 }
 
+/// A vector that is not finite, or not in single precision, at row `row` of `element`.
+pub(super) fn not_finite(element: &str, row: usize, vector: Vector3) -> Fault {
+    Fault {
+        place: Place::Row {
+            element: element.to_owned(),
+            row,
+        },
+        problem: ReadProblem::NotFinite {
+            text: format!("{} {} {}", vector.x, vector.y, vector.z),
+        },
+    }
+}
+
 fn missing(element: &str, row: usize) -> Fault {
     let expected = "an element that another names";
     Fault {
@@ -294,11 +321,7 @@ fn missing(element: &str, row: usize) -> Fault {
     }
 }
 
-fn indices(
-    container: &Container<'_>,
-    accessor: usize,
-    rows: &Range<usize>,
-) -> Result<Vec<u32>, Fault> {
+fn indices(container: &Container, accessor: usize, rows: &Range<usize>) -> Result<Vec<u32>, Fault> {
     let layout = Layout::of(container, accessor)?;
     let mut corners = Vec::with_capacity(layout.count);
     for k in 0..layout.count {
@@ -325,7 +348,7 @@ type ShownMesh = (Option<usize>, usize, Option<Matrix4<f64>>);
 
 /// Node, mesh and transform of every mesh that the scene shows, in the order of the nodes; every mesh of a file that
 /// shows none. A skinned mesh ignores its node's transform, as the format says.
-fn shown_meshes(container: &Container<'_>) -> Vec<ShownMesh> {
+fn shown_meshes(container: &Container) -> Vec<ShownMesh> {
     let nodes = &container.root.nodes;
     let transforms = scene_transforms(container);
     let shown: Vec<ShownMesh> = (0..nodes.len())
@@ -344,7 +367,7 @@ fn shown_meshes(container: &Container<'_>) -> Vec<ShownMesh> {
 }
 
 /// From each node's frame into the scene; none for nodes that the scene does not hold.
-fn scene_transforms(container: &Container<'_>) -> Vec<Option<Matrix4<f64>>> {
+fn scene_transforms(container: &Container) -> Vec<Option<Matrix4<f64>>> {
     let root = &container.root;
     let scene = root.scene.map_or(0, |s| s.value());
     let tops: Vec<usize> = match root.scenes.get(scene) {

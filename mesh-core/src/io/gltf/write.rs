@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use base64::engine::general_purpose::STANDARD;
 use base64::Engine;
 
-use crate::io::error::Unwritable;
+use crate::io::fault::Unwritable;
 use crate::io::triangles::Triangles;
 use crate::io::uvs::CornerUvs;
 use crate::{Point3, PolygonSoup, Vector3};
@@ -20,7 +20,7 @@ struct Content {
 }
 
 /// A new GLB of `soup`; vertices on a seam of texture coordinates are split there.
-pub(in crate::io) fn write_glb(
+pub(super) fn write_glb(
     soup: &PolygonSoup,
     uvs: Option<&CornerUvs>,
 ) -> Result<Vec<u8>, Unwritable> {
@@ -41,7 +41,7 @@ pub(in crate::io) fn write_glb(
 }
 
 /// The same as one JSON document.
-pub(in crate::io) fn write_gltf(
+pub(super) fn write_gltf(
     soup: &PolygonSoup,
     uvs: Option<&CornerUvs>,
 ) -> Result<Vec<u8>, Unwritable> {

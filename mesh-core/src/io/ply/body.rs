@@ -3,7 +3,8 @@
 use std::ops::Range;
 
 use super::header::{Element, Encoding, Header, Kind, Scalar};
-use crate::io::error::{excerpt, Fault, Place, ReadProblem};
+use crate::io::error::{Place, ReadProblem};
+use crate::io::fault::{excerpt, Fault};
 use crate::io::text::{number, push_text, Cursor, Splice};
 
 /// A number of the body and the bytes it takes.

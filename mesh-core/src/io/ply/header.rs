@@ -2,7 +2,8 @@
 
 use std::ops::Range;
 
-use crate::io::error::{excerpt, Fault, ReadProblem};
+use crate::io::error::ReadProblem;
+use crate::io::fault::{excerpt, Fault};
 use crate::io::text::{Cursor, Field};
 
 /// How the body is written.

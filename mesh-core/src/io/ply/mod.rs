@@ -5,25 +5,50 @@ mod body;
 mod header;
 mod scalars;
 
+use std::path::Path;
+
 use self::body::{push_doubles, push_header, Body, Value};
 use self::header::{Element, Header, Kind, Property, Scalar};
-use super::contents::{polygon_area_vector, CarriedNormals, Contents, Parsed};
-use super::error::{Fault, ReadProblem};
+use super::contents::{CarriedNormals, Contents, Morphs};
+use super::document::{Codec, Document, Geometry, Parsed};
+use super::error::ReadProblem;
+use super::fault::Fault;
 use super::text::Splice;
 use crate::{Point3, PolygonSoup, Vector3};
 
-pub(super) use self::scalars::vertex_scalars;
+pub(super) const CODEC: Codec = Codec {
+    name: "PLY",
+    extensions: &["ply"],
+    is_text: false,
+    geometry: Geometry::Polygons,
+    has_uvs: false,
+    has_mark,
+    has_statement: |_| false,
+    read,
+    write: |soup, _| Ok(write(soup)),
+};
+
+/// A PLY file as it was read.
+#[derive(Debug)]
+struct PlyFile {
+    bytes: Vec<u8>,
+    header: Header,
+}
+
+fn has_mark(bytes: &[u8]) -> bool {
+    bytes.starts_with(b"ply") && matches!(bytes.get(3), Some(b'\n' | b'\r'))
+}
 
 const POSITION: [&str; 3] = ["x", "y", "z"];
 const NORMAL: [&str; 3] = ["nx", "ny", "nz"];
 
 /// Reads a file: vertices and faces in their order.
-pub(super) fn read(bytes: &[u8]) -> Result<Parsed, Fault> {
-    let header = Header::read(bytes)?;
+fn read(bytes: Vec<u8>, _: &Path) -> Result<Parsed, Fault> {
+    let header = Header::read(&bytes)?;
     check_has_positions(&header)?;
 
     let mut soup = PolygonSoup::default();
-    let mut body = Body::new(bytes, &header);
+    let mut body = Body::new(&bytes, &header);
     for (k, element) in header.elements.iter().enumerate() {
         match element.name.as_str() {
             "vertex" if is_first(&header, k) => read_vertices(&mut body, element, &mut soup)?,
@@ -36,6 +61,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Parsed, Fault> {
     Ok(Parsed {
         contents: contents(&header, &soup),
         soup,
+        document: Box::new(PlyFile { bytes, header }),
     })
 }
 
@@ -240,45 +266,45 @@ fn read_strips<'a>(
     })
 }
 
-/// The file with the vertices at `moved`: coordinates that did not change keep their bytes. Positions in whole-number
-/// columns become `double` columns.
-pub(super) fn rewrite(
-    bytes: &[u8],
-    contents: &Contents,
-    rest: &PolygonSoup,
-    moved: &[Point3],
-) -> Result<Vec<u8>, Fault> {
-    let header = Header::read(bytes)?;
-    let normals = match contents.n_normals {
-        0 => None,
-        _ => Some(carried_normals(bytes, &header, rest, moved)?),
-    };
-    let has_moved = rest.positions != moved;
-    let mut splice = Splice::new(bytes);
-    let mut body = Body::new(bytes, &header);
-    for (k, element) in header.elements.iter().enumerate() {
-        if element.name != "vertex" {
-            body.skip_element(element)?;
-            continue;
-        }
-        if !is_first(&header, k) {
+impl Document for PlyFile {
+    fn vertex_normals(&self, _: &PolygonSoup) -> Option<Vec<Vector3>> {
+        self.normal_rows().ok().flatten()
+    }
+
+    fn vertex_scalars(&self, name: &str) -> Option<Vec<f64>> {
+        let values = scalars::vertex_scalars(&self.bytes, &self.header, name);
+        values.ok().flatten()
+    }
+
+    /// Coordinates that did not change keep their bytes. Positions in whole-number columns become `double` columns.
+    fn rewrite(&self, rest: &PolygonSoup, moved: &[Point3], _: Morphs) -> Result<Vec<u8>, Fault> {
+        let rows = self.normal_rows()?;
+        let normals = rows.map(|rows| CarriedNormals::of_vertices(rows, rest, moved));
+        let has_moved = rest.positions != moved;
+        let mut splice = Splice::new(&self.bytes);
+        let mut body = Body::new(&self.bytes, &self.header);
+        for element in &self.header.elements {
+            if element.name != "vertex" {
+                body.skip_element(element)?;
+                continue;
+            }
+            if has_moved {
+                widen_positions(&mut splice, element);
+            }
+            rewrite_vertices(&mut body, element, &mut splice, |property, row| {
+                if let Some((axis, _)) = axis_of(property, POSITION) {
+                    let (from, to) = (rest.positions[row][axis], moved[row][axis]);
+                    let is_kept = from.to_bits() == to.to_bits();
+                    return (!is_kept || has_moved && is_widened(property)).then_some(to);
+                }
+                let (axis, scalar) = axis_of(property, NORMAL)?;
+                let n = normals.as_ref()?.changed(row)?;
+                scalar.is_float().then_some(n[axis])
+            })?;
             break;
         }
-        if has_moved {
-            widen_positions(&mut splice, element);
-        }
-        rewrite_vertices(&mut body, element, &mut splice, |property, row| {
-            if let Some((axis, _)) = axis_of(property, POSITION) {
-                let (from, to) = (rest.positions[row][axis], moved[row][axis]);
-                let is_kept = from.to_bits() == to.to_bits();
-                return (!is_kept || has_moved && is_widened(property)).then_some(to);
-            }
-            let (axis, scalar) = axis_of(property, NORMAL)?;
-            let n = normals.as_ref()?.changed(row)?;
-            scalar.is_float().then_some(n[axis])
-        })?;
+        Ok(splice.finish())
     }
-    Ok(splice.finish())
 }
 
 fn is_widened(property: &Property) -> bool {
@@ -311,60 +337,42 @@ fn rewrite_vertices<'a>(
     })
 }
 
-fn carried_normals(
-    bytes: &[u8],
-    header: &Header,
-    rest: &PolygonSoup,
-    moved: &[Point3],
-) -> Result<CarriedNormals, Fault> {
-    let mut carried = CarriedNormals::new(normal_rows(bytes, header)?);
-    for corners in &rest.faces {
-        let areas = [&rest.positions[..], moved].map(|x| polygon_area_vector(x, corners));
-        for &v in corners {
-            carried.add_corner(v as usize, areas);
+impl PlyFile {
+    /// The columns `nx ny nz` of the vertices, if there are any.
+    fn normal_rows(&self) -> Result<Option<Vec<Vector3>>, Fault> {
+        let mut body = Body::new(&self.bytes, &self.header);
+        for element in &self.header.elements {
+            if element.name != "vertex" {
+                body.skip_element(element)?;
+            } else if element.has_any(&NORMAL[..1]) {
+                return normal_rows(&mut body, element).map(Some);
+            } else {
+                break;
+            }
         }
+        Ok(None)
     }
-    Ok(carried)
 }
 
-fn normal_rows(bytes: &[u8], header: &Header) -> Result<Vec<Vector3>, Fault> {
+fn normal_rows<'a>(body: &mut Body<'a>, element: &'a Element) -> Result<Vec<Vector3>, Fault> {
     let mut rows = Vec::new();
-    let mut body = Body::new(bytes, header);
-    for element in &header.elements {
-        if element.name != "vertex" {
-            body.skip_element(element)?;
-            continue;
-        }
-        body.each_row(element, |body, _| {
-            let mut n = Vector3::zeros();
-            for property in &element.properties {
-                match axis_of(property, NORMAL) {
-                    Some((axis, scalar)) => n[axis] = body.value_or_nan(scalar)?,
-                    None => body.skip(property.kind)?,
-                }
+    body.each_row(element, |body, _| {
+        let mut n = Vector3::zeros();
+        for property in &element.properties {
+            match axis_of(property, NORMAL) {
+                Some((axis, scalar)) => n[axis] = body.value_or_nan(scalar)?,
+                None => body.skip(property.kind)?,
             }
-            rows.push(if n.iter().all(|x| x.is_finite()) {
-                n
-            } else {
-                Vector3::zeros()
-            });
-            Ok(())
-        })?;
-        break;
-    }
+        }
+        let is_finite = n.iter().all(|x| x.is_finite());
+        rows.push(if is_finite { n } else { Vector3::zeros() });
+        Ok(())
+    })?;
     Ok(rows)
 }
 
-/// The columns `nx ny nz` of the vertices.
-pub(super) fn vertex_normals(bytes: &[u8], contents: &Contents) -> Option<Vec<Vector3>> {
-    (contents.n_normals > 0).then(|| {
-        let header = Header::read(bytes).ok()?;
-        normal_rows(bytes, &header).ok()
-    })?
-}
-
 /// A new file of `soup`, binary, in double precision.
-pub(super) fn write(soup: &PolygonSoup) -> Vec<u8> {
+fn write(soup: &PolygonSoup) -> Vec<u8> {
     let mut out = Vec::with_capacity(24 * soup.positions.len() + 16 * soup.faces.len() + 256);
     push_header(&mut out, soup.positions.len(), soup.faces.len());
     for p in &soup.positions {

@@ -2,12 +2,15 @@
 
 use super::body::Body;
 use super::header::{Header, Kind};
-use crate::io::error::Fault;
+use crate::io::fault::Fault;
 
 /// The value of a scalar property at each vertex; none if the first element `vertex` has no such property.
-pub(in crate::io) fn vertex_scalars(bytes: &[u8], name: &str) -> Result<Option<Vec<f64>>, Fault> {
-    let header = Header::read(bytes)?;
-    let mut body = Body::new(bytes, &header);
+pub(super) fn vertex_scalars(
+    bytes: &[u8],
+    header: &Header,
+    name: &str,
+) -> Result<Option<Vec<f64>>, Fault> {
+    let mut body = Body::new(bytes, header);
     for element in &header.elements {
         if element.name != "vertex" {
             body.skip_element(element)?;
