@@ -76,3 +76,8 @@ pub use nalgebra;
 pub type Point3 = nalgebra::Point3<f64>;
 /// A direction or displacement, in the units of its file.
 pub type Vector3 = nalgebra::Vector3<f64>;
+
+/// The examples of the README, which are tested as those of the documentation are.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

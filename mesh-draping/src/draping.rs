@@ -2,17 +2,15 @@
 
 use mesh_core::{Landmark, Positions};
 use mesh_init::InitInput;
-use mesh_loss::Overlap;
 use neural_drape::network::NetworkMap;
-use neural_drape::{
-    Drape, DrapeConfig, DrapeInput, DrapeState, OverlapMode, Regions, Repair, StepReport,
-};
+use neural_drape::{Drape, DrapeConfig, DrapeInput, DrapeState, Regions, Repair, StepReport};
 
+use crate::ending::{decided_overlap, left_out, repaired};
 use crate::explain::Counted;
 use crate::stages::{DRAPING, REFINING};
 use crate::stand_in::StandIn;
 use crate::{
-    initial_deformation, Error, History, InitialShape, Note, Outcome, Pair, Preset, Shape, Stages,
+    initial_deformation, Error, History, InitialShape, Note, Outcome, Pair, Preset, Stages,
 };
 
 /// Iterations on a dense source itself, after its stand-in was draped.
@@ -82,6 +80,8 @@ impl Draping {
             mut stages,
             is_stand_in_allowed,
         } = beginning;
+        pair.check_landmarks(&pair.landmarks)?;
+        pair.check_lengths(&regions, truth.as_ref())?;
         let is_dense = is_stand_in_allowed && StandIn::is_needed(&pair, &preset);
         let stand_in = is_dense.then(|| stages.time("stand-in", || StandIn::new(&pair)));
         let stand_in = stand_in.transpose()?;
@@ -246,21 +246,25 @@ impl Draping {
     /// # Errors
     /// Landmarks that do not fit the source, or a deformation that cannot be solved for.
     pub fn set_landmarks(&mut self, landmarks: Vec<Landmark>) -> Result<(), Error> {
-        let draped_pair = match &mut self.stand_in {
-            Some(stand_in) => {
-                stand_in.pair.landmarks = stand_in.landmarks(&landmarks);
-                &stand_in.pair
-            }
-            None => &Pair {
+        self.pair.check_landmarks(&landmarks)?;
+        let draped_pair = match &self.stand_in {
+            Some(stand_in) => Pair {
+                landmarks: stand_in.landmarks(&landmarks),
+                ..stand_in.pair.clone()
+            },
+            None => Pair {
                 landmarks: landmarks.clone(),
                 ..self.pair.clone()
             },
         };
         let present = self.drape.positions();
-        let moved = adjusted(draped_pair, &present)?;
+        let moved = adjusted(&draped_pair, &present)?;
         self.drape.set_landmarks(&draped_pair.landmarks)?;
         let moves = moved.iter().zip(&present).map(|(m, p)| m - p);
         self.drape.displace(&moves.collect())?;
+        if let Some(stand_in) = &mut self.stand_in {
+            stand_in.pair = draped_pair;
+        }
         self.pair.landmarks = landmarks;
         self.ensure_time();
         Ok(())
@@ -271,6 +275,7 @@ impl Draping {
     /// # Errors
     /// Not one entry per vertex of the source, or an attraction outside 0..=1.
     pub fn set_regions(&mut self, regions: Regions) -> Result<(), Error> {
+        self.pair.check_lengths(&regions, None)?;
         match &self.stand_in {
             Some(stand_in) => self.drape.set_regions(&stand_in.regions(&regions))?,
             None => self.drape.set_regions(&regions)?,
@@ -317,6 +322,8 @@ impl Draping {
         landmarks: Vec<Landmark>,
         regions: Regions,
     ) -> Result<(), Error> {
+        self.pair.check_landmarks(&landmarks)?;
+        self.pair.check_lengths(&regions, None)?;
         match &mut self.stand_in {
             Some(stand_in) => {
                 stand_in.pair.landmarks = stand_in.landmarks(&landmarks);
@@ -421,60 +428,4 @@ pub fn adjusted(pair: &Pair, present: &Positions) -> Result<Positions, Error> {
         target_frame: pair.target.judged().principal_frame(),
     };
     Ok(mesh_init::adjust(input, present)?)
-}
-
-/// What the refinement takes as lying beyond: what the drape of the stand-in came to.
-fn decided_overlap(coarse: &Drape, asked: OverlapMode) -> OverlapMode {
-    let Overlap {
-        target_exceeds,
-        mesh_exceeds,
-    } = coarse.overlap();
-    // A part that no boundary of the target marks is found again.
-    if coarse.is_mesh_part_left_out() && !mesh_exceeds {
-        return asked;
-    }
-    match (target_exceeds, mesh_exceeds) {
-        (false, false) => OverlapMode::Full,
-        (true, false) => OverlapMode::SourcePartial,
-        (false, true) => OverlapMode::TargetPartial,
-        (true, true) => OverlapMode::BothPartial,
-    }
-}
-
-/// What the run takes as lying beyond the other shape.
-fn left_out(drape: &Drape) -> impl Iterator<Item = Note> {
-    let beyond = drape.beyond();
-    let parts = [
-        (
-            drape.overlap().target_exceeds,
-            Shape::Target,
-            beyond.of_target,
-        ),
-        (drape.is_mesh_part_left_out(), Shape::Source, beyond.of_mesh),
-    ];
-    parts
-        .into_iter()
-        .filter(|&(is_left_out, ..)| is_left_out)
-        .map(|(_, shape, share)| Note::LeftOut { shape, share })
-}
-
-/// What the last stage took out, and what it could not.
-fn repaired(end: &Repair, pair: &Pair) -> Vec<Note> {
-    let row = |v| pair.source.file_row(v);
-    let triangles = pair.source.triangulation().triangles();
-    let count = |d: &neural_drape::Defects| d.folds.len() + d.skinny.len();
-    let (n_before, n_left) = (count(&end.before), count(&end.left));
-    let mut notes = Vec::new();
-    if n_before > n_left {
-        notes.push(Note::Repaired {
-            n: n_before - n_left,
-        });
-    }
-    notes.extend(end.left.folds.iter().map(|&ends| Note::FoldLeft {
-        rows: ends.map(row),
-    }));
-    notes.extend(end.left.skinny.iter().map(|&t| Note::SkinnyLeft {
-        rows: triangles[t].map(row),
-    }));
-    notes
 }

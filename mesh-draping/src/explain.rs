@@ -3,6 +3,7 @@
 use std::fmt;
 
 use mesh_core::{measure, FaceId, Point3, Positions, TriangleBvh, VertexData, VertexId};
+use mesh_metrics::percentiles;
 use serde::{Serialize, Serializer};
 
 use crate::landmarks::Label;
@@ -293,7 +294,7 @@ impl<'a> Case<'a> {
                 .filter(|&v| self.counts[v])
                 .map(|v| (self.distances[v], areas[v]))
                 .collect();
-            region(name, list)
+            region(name, &list)
         };
         let all = summary(
             "all that has a counterpart".to_owned(),
@@ -365,20 +366,22 @@ fn peaks(mut far: Vec<(f64, Point3)>, apart: f64) -> Vec<(f64, Point3)> {
 }
 
 /// Percentiles of distances over vertices, the mean by their areas; none without a vertex.
-fn region(name: String, mut list: Vec<(f64, f64)>) -> Option<RegionDistances> {
-    list.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let last = list.len().checked_sub(1)?;
-    let at = |share: f64| list[(share * last as f64).round() as usize].0;
+fn region(name: String, list: &[(f64, f64)]) -> Option<RegionDistances> {
+    if list.is_empty() {
+        return None;
+    }
+    let distances = list.iter().map(|(d, _)| *d);
+    let [p50, p90, p99, max] = percentiles(distances, [0.5, 0.9, 0.99, 1.0]);
     let area: f64 = list.iter().map(|(_, a)| a).sum();
     let weighted: f64 = list.iter().map(|(d, a)| d * a).sum();
     Some(RegionDistances {
         name,
         n_vertices: list.len(),
-        mean: if area > 0.0 { weighted / area } else { at(0.5) },
-        p50: at(0.5),
-        p90: at(0.9),
-        p99: at(0.99),
-        max: at(1.0),
+        mean: if area > 0.0 { weighted / area } else { p50 },
+        p50,
+        p90,
+        p99,
+        max,
     })
 }
 
@@ -404,11 +407,12 @@ mod tests {
     #[test]
     fn percentiles_go_by_vertices_and_the_mean_by_area() {
         let list = (0..=100).map(|k| (f64::from(k), if k == 100 { 1.0 } else { 0.0 }));
-        let r = region("r".to_owned(), list.collect()).unwrap();
+        let list: Vec<(f64, f64)> = list.collect();
+        let r = region("r".to_owned(), &list).unwrap();
         assert_eq!(
             (r.p50, r.p90, r.p99, r.max, r.mean),
             (50.0, 90.0, 99.0, 100.0, 100.0)
         );
-        assert_eq!(region("empty".to_owned(), Vec::new()), None);
+        assert_eq!(region("empty".to_owned(), &[]), None);
     }
 }

@@ -1,7 +1,9 @@
 //! Source, target and landmarks together.
 
 use mesh_core::{Landmark, Positions};
+use mesh_init::InitError;
 use mesh_metrics::{evaluate, EvaluationConfig, EvaluationInput, Report};
+use neural_drape::{DrapeError, Regions};
 
 use crate::landmarks::{examine, Finding};
 use crate::{Error, Source, Target};
@@ -38,5 +40,43 @@ impl Pair {
             truth,
         };
         Ok(evaluate(input, &EvaluationConfig::standard())?)
+    }
+
+    /// Whether landmarks name vertices that the source has.
+    pub(crate) fn check_landmarks(&self, landmarks: &[Landmark]) -> Result<(), InitError> {
+        let n_vertices = self.source.rest().len();
+        for (landmark, l) in landmarks.iter().enumerate() {
+            let beyond = l.source.vertices.iter().find(|v| v.index() >= n_vertices);
+            if let Some(v) = beyond {
+                return Err(InitError::LandmarkOutOfRange {
+                    landmark,
+                    vertex: v.index(),
+                    n_vertices,
+                });
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether there is an entry for each vertex of the source.
+    pub(crate) fn check_lengths(
+        &self,
+        regions: &Regions,
+        truth: Option<&Positions>,
+    ) -> Result<(), DrapeError> {
+        let expected = self.source.rest().len();
+        let lengths = [
+            ("the attraction of the regions", regions.attraction.len()),
+            ("the rigid regions", regions.rigid.len()),
+            ("the truth", truth.map_or(expected, Positions::len)),
+        ];
+        match lengths.into_iter().find(|(_, found)| *found != expected) {
+            Some((what, found)) => Err(DrapeError::LengthMismatch {
+                what,
+                found,
+                expected,
+            }),
+            None => Ok(()),
+        }
     }
 }

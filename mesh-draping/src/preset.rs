@@ -39,9 +39,6 @@ const PRESETS: [Named; 4] = [
     ("paper", Preset::paper),
 ];
 
-/// The study of the start: the drape is that of the first study.
-const AFFINE_START: &str = "study-affine-start";
-
 impl Preset {
     /// The default: preconditioned vertices, from coarse to fine ([`DrapeConfig::standard`]).
     pub fn standard() -> Self {
@@ -79,9 +76,17 @@ impl Preset {
         PRESETS.iter().map(|(name, _)| *name)
     }
 
-    /// The names of the paper's studies, which change one thing each: presets, too.
-    pub fn studies() -> impl Iterator<Item = &'static str> {
-        DrapeConfig::studies()
+    /// The paper's studies, which change one thing each: presets, too ([`DrapeConfig::studies`], and another start).
+    pub fn studies() -> Vec<Self> {
+        let studies = DrapeConfig::studies().into_iter();
+        let mut presets: Vec<Self> = studies
+            .map(|study| Self::of_drape(study.name, study.config))
+            .collect();
+        presets.push(Self {
+            initial: InitialMethod::Affine,
+            ..Self::of_drape("study-affine-start", DrapeConfig::study())
+        });
+        presets
     }
 
     /// The preset or study of this name.
@@ -92,17 +97,13 @@ impl Preset {
         if let Some((_, preset)) = PRESETS.iter().find(|(known, _)| *known == name) {
             return Ok(preset());
         }
-        let initial = match name {
-            AFFINE_START => InitialMethod::Affine,
-            _ => InitialMethod::Standard,
-        };
-        let drape = DrapeConfig::named(name).map_err(|_| PresetProblem::Unknown {
+        let mut studies = Self::studies().into_iter();
+        let unknown = || PresetProblem::Unknown {
             name: name.to_owned(),
-        })?;
-        Ok(Self {
-            initial,
-            ..Self::of_drape(name, drape)
-        })
+        };
+        Ok(studies
+            .find(|study| study.name == name)
+            .ok_or_else(unknown)?)
     }
 
     /// The settings in the text of a TOML file, over those of the preset that its key `preset` names, else the default.
@@ -294,9 +295,9 @@ mod tests {
 
     #[test]
     fn every_preset_survives_its_own_file() {
-        for name in Preset::names().chain(Preset::studies()) {
-            let preset = Preset::named(name).unwrap();
-            assert_eq!(preset.name, name);
+        let presets = Preset::names().map(|name| Preset::named(name).unwrap());
+        for preset in presets.chain(Preset::studies()) {
+            assert_eq!(Preset::named(&preset.name).unwrap(), preset);
             assert_eq!(Preset::from_toml(&preset.to_toml()).unwrap(), preset);
         }
     }

@@ -16,6 +16,26 @@
 //! | sliding along the surface | [`Drift`] | beyond the paper |
 //!
 //! [`SurfaceMatcher::resample`] draws samples and finds closest points; it alone changes what the distance terms see.
+//!
+//! ```
+//! use std::sync::Arc;
+//! use mesh_core::{shapes, Point3, Positions, Triangulation, Vector3, VertexData};
+//! use mesh_loss::{CornerAngle, Loss};
+//!
+//! let (mesh, rest) = shapes::quad_sphere(6).into_halfedge()?;
+//! let angles = CornerAngle::new(&Arc::new(Triangulation::new(&mesh, &rest)), &rest);
+//!
+//! // A sphere that was stretched has other angles; a small step against the gradient brings them nearer.
+//! let x = rest.map(|p| Point3::new(2.0 * p.x, p.y, p.z));
+//! let mut gradient = VertexData::new(x.len(), Vector3::zeros());
+//! let before = angles.accumulate(&x, 1.0, &mut gradient);
+//! let nearer: Positions = x.iter().zip(&gradient).map(|(p, g)| p - g).collect();
+//! let after = angles.accumulate(&nearer, 1.0, &mut gradient);
+//! assert!(0.0 < after && after < before);
+//! # Ok::<(), mesh_core::TopologyError>(())
+//! ```
+//!
+//! `examples/own_descent.rs` is a whole descent on terms of this crate.
 
 mod area_kl;
 mod chamfer;
@@ -29,9 +49,10 @@ mod hard_places;
 mod landmark_distance;
 mod local_shape;
 mod loss;
-mod matching;
+mod matcher;
+mod matches;
 mod normal_agreement;
-mod pairing;
+mod surfaces;
 mod triangle_quality;
 mod worst_distance;
 
@@ -46,7 +67,13 @@ pub use hard_places::HardCorners;
 pub use landmark_distance::LandmarkDistance;
 pub use local_shape::LocalShape;
 pub use loss::Loss;
-pub use matching::{Beyond, Matches, Overlap, SamplingConfig, SurfaceMatch, SurfaceMatcher};
+pub use matcher::SurfaceMatcher;
+pub use matches::{Beyond, Matches, Overlap, SamplingConfig, SurfaceMatch};
 pub use normal_agreement::NormalAgreement;
 pub use triangle_quality::TriangleQuality;
 pub use worst_distance::WorstDistance;
+
+/// The examples of the README, which are tested as those of the documentation are.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

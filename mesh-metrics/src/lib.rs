@@ -48,3 +48,8 @@ pub use report::{
 pub use self_intersection::self_intersections;
 
 pub use mesh_core;
+
+/// The examples of the README, which are tested as those of the documentation are.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -96,8 +96,8 @@ pub(crate) struct Target<'a> {
     pub(crate) frame: &'a UnitFrame,
 }
 
-/// Marks what the target lacks, where the settings let parts be left out and it is enough; `beyond` counts it.
-pub(crate) fn lacking(
+/// Marks what the target does not cover, where the settings let parts be left out and it is enough; `beyond` counts it.
+pub(crate) fn mark_uncovered(
     triangulation: &Triangulation,
     initial: &Positions,
     target: Target<'_>,
@@ -113,10 +113,10 @@ pub(crate) fn lacking(
     } else {
         0.0
     };
-    let lacking = uncovered(triangulation, initial, target, least);
-    let share = area_share(triangulation, initial, &lacking);
+    let is_uncovered = uncovered(triangulation, initial, target, least);
+    let share = area_share(triangulation, initial, &is_uncovered);
     beyond.of_mesh = beyond.of_mesh.max(share);
-    lacking
+    is_uncovered
 }
 
 /// Marks the vertices of the mesh at `x` (in `frame`) that the target does not cover: shoulders over a bust that ends
@@ -224,7 +224,7 @@ mod tests {
     }
 
     #[test]
-    fn what_the_target_lacks_is_marked_and_nothing_else() {
+    fn what_the_target_does_not_cover_is_marked_and_nothing_else() {
         let (mesh, rest) = bust(-9.0).into_halfedge().unwrap();
         let triangulation = Triangulation::new(&mesh, &rest);
         let share = |floor: f64| {

@@ -4,39 +4,22 @@ use std::sync::Arc;
 
 use mesh_core::sampling::SeededRng;
 use mesh_core::{
-    Landmark, Positions, Profile, TargetSurface, Triangulation, UnitFrame, Vector3, VertexData,
-    VertexId,
+    Landmark, Positions, Profile, Triangulation, UnitFrame, Vector3, VertexData, VertexId,
 };
-use mesh_loss::{
-    Beyond, Chamfer, HardCorners, LandmarkDistance, Matches, NormalAgreement, Overlap,
-    SurfaceMatcher, WorstDistance,
-};
+use mesh_loss::{Beyond, HardCorners, Matches, Overlap, SurfaceMatcher};
 
-use crate::check::MAX_ITERATIONS;
-use crate::config::{Descent, DrapeConfig, ParametrizationConfig, Stage, Weights};
-use crate::coverage::{lacking, Pairing, Target, FAR_BEYOND, N_BEYOND};
-use crate::network::{Network, NetworkMap};
+use crate::config::{Descent, DrapeConfig};
+use crate::coverage::{mark_uncovered, Pairing, Target, FAR_BEYOND, N_BEYOND};
+use crate::input::{check_finite, check_landmarks};
+use crate::network::NetworkMap;
+use crate::objective::{self, DistanceLoss, StructuralLoss, TermReport};
 use crate::regions::{Follow, Guidance, Regions};
-use crate::terms::{accumulate, Structure, Term, TermReport};
-use crate::{DrapeError, DrapeState, Parametrization, Repair, Vertices};
+use crate::schedule::{Stage, Weights};
+use crate::setting::MAX_COUNT;
+use crate::{DrapeError, DrapeInput, DrapeState, Parametrization, Repair};
 
 /// So many times in a run, parts that nothing attracts follow the rest.
 const N_FOLLOWS: usize = 5;
-
-/// What is draped over what. A drape keeps what it needs of it: it borrows nothing.
-#[derive(Clone, Copy)]
-pub struct DrapeInput<'a> {
-    /// The source's polygons as triangles.
-    pub triangulation: &'a Arc<Triangulation>,
-    /// The source as given: its shape is kept.
-    pub rest: &'a Arc<Positions>,
-    /// Where the drape starts, in the target's coordinates.
-    pub initial: &'a Positions,
-    /// The shape to drape over.
-    pub target: &'a Arc<dyn TargetSurface>,
-    /// Places that belong together.
-    pub landmarks: &'a [Landmark],
-}
 
 /// What one iteration did.
 #[derive(Clone, Debug, PartialEq)]
@@ -47,7 +30,7 @@ pub struct StepReport {
     pub n_iterations: usize,
     /// Each term before the step.
     pub terms: Vec<TermReport>,
-    /// Σ weight · value
+    /// Eq. 1, `L = L_d + λ L_s`: Σ weight · value over the terms.
     pub total: f64,
 }
 
@@ -60,7 +43,7 @@ pub struct Drape {
     parametrization: Box<dyn Parametrization>,
     landmarks: Vec<Landmark>,
     matcher: SurfaceMatcher,
-    structure: Structure,
+    structure: StructuralLoss,
     beyond: Beyond,
     pairing: Pairing,
     triangulation: Arc<Triangulation>,
@@ -82,28 +65,100 @@ impl Drape {
     ///
     /// # Errors
     /// Inputs of different lengths or of different meshes, a coordinate that is not finite, a mesh without area, a setting
-    /// out of range or that asks for more memory than there is.
+    /// out of range or that asks for more memory than there is; settings that move a network where the cargo feature
+    /// `network` is off.
     pub fn new(input: DrapeInput<'_>, config: DrapeConfig) -> Result<Self, DrapeError> {
+        let (what, seed) = (config.parametrization.clone(), config.seed);
+        Self::with_parametrization(input, config, |initial| {
+            what.build(input.triangulation, initial, seed)
+        })
+    }
+
+    /// A drape that moves its vertices by a map of your own; `config.parametrization` does not count.
+    ///
+    /// `make` is given the initial positions in the unit frame of the target, one per vertex; the positions of what it
+    /// returns are in that frame, too.
+    ///
+    /// A drape that only shifts the source as a whole, by 3 parameters t: `x = x₀ + t`, `dL/dt = Σᵢ dL/dxᵢ`.
+    ///
+    /// ```
+    /// use std::sync::Arc;
+    /// use mesh_core::{shapes, Positions, TargetSurface, TriangleSoup, Triangulation, Vector3, VertexData};
+    /// use neural_drape::{
+    ///     Drape, DrapeConfig, DrapeError, DrapeInput, Parametrization, StateReader, StateWriter,
+    /// };
+    ///
+    /// struct Shift(Positions);
+    ///
+    /// impl Parametrization for Shift {
+    ///     fn positions(&self) -> &Positions {
+    ///         &self.0
+    ///     }
+    ///     fn descend(&mut self, gradient: &VertexData<Vector3>, rate: f64) -> Result<(), DrapeError> {
+    ///         let sum: Vector3 = gradient.iter().sum();
+    ///         let step = sum.try_normalize(1e-12).unwrap_or_default() * rate;
+    ///         self.0.iter_mut().for_each(|p| *p -= step);
+    ///         Ok(())
+    ///     }
+    ///     fn set_progress(&mut self, _progress: f64) -> Result<(), DrapeError> {
+    ///         Ok(())
+    ///     }
+    ///     fn displace(&mut self, displacements: &VertexData<Vector3>) {
+    ///         self.0.iter_mut().zip(displacements).for_each(|(p, d)| *p += d);
+    ///     }
+    ///     fn save(&mut self, state: &mut StateWriter) {
+    ///         state.points(&self.0);
+    ///     }
+    ///     fn restore(&mut self, state: &mut StateReader<'_>) -> Result<(), DrapeError> {
+    ///         state.points(self.0.iter_mut())
+    ///     }
+    /// }
+    ///
+    /// let (mesh, rest) = shapes::quad_sphere(8).into_halfedge()?;
+    /// let target: Arc<dyn TargetSurface> = Arc::new(TriangleSoup::new(shapes::icosphere(3))?);
+    /// let input = DrapeInput {
+    ///     triangulation: &Arc::new(Triangulation::new(&mesh, &rest)),
+    ///     initial: &rest.map(|p| p + Vector3::new(0.3, 0.2, 0.0)),
+    ///     rest: &Arc::new(rest),
+    ///     target: &target,
+    ///     landmarks: &[],
+    /// };
+    /// let start = |initial: &Positions| Ok(Box::new(Shift(initial.clone())) as Box<dyn Parametrization>);
+    /// let mut drape = Drape::with_parametrization(input, DrapeConfig::quick(), start)?;
+    /// while drape.step()?.is_some() {}
+    /// let x = drape.positions();
+    /// let centre = x.iter().map(|p| p.coords).sum::<Vector3>() / x.len() as f64;
+    /// assert!(centre.norm() < 0.02);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As for [`Self::new`], and what `make` returns.
+    pub fn with_parametrization(
+        input: DrapeInput<'_>,
+        config: DrapeConfig,
+        make: impl FnOnce(&Positions) -> Result<Box<dyn Parametrization>, DrapeError>,
+    ) -> Result<Self, DrapeError> {
         input.check()?;
         config.check()?;
         config.check_memory(input.rest.len())?;
         let frame = input.target.principal_frame();
         let initial = input.initial.map(|p| frame.to_unit(p));
-        let parametrization: Box<dyn Parametrization> = match &config.parametrization {
-            ParametrizationConfig::Network(network) => {
-                Box::new(Network::new(&initial, network, config.seed)?)
-            }
-            ParametrizationConfig::Vertices(vertices) => {
-                Box::new(Vertices::new(input.triangulation, &initial, vertices)?)
-            }
-        };
+        let parametrization = make(&initial)?;
+        if parametrization.positions().len() != initial.len() {
+            return Err(DrapeError::LengthMismatch {
+                what: "the parametrization",
+                found: parametrization.positions().len(),
+                expected: initial.len(),
+            });
+        }
         let mut rng = SeededRng::new(config.seed);
         let mut matcher = SurfaceMatcher::new(input.triangulation, &initial, input.target, frame);
         let mut beyond = matcher.beyond(&initial, N_BEYOND, FAR_BEYOND, &mut rng);
         let n_iterations = config.stages.iter().map(|s| s.n_iterations).sum();
         let ends_openly = matcher.has_boundary();
         let pairing = Pairing::new(config.overlap, &beyond, ends_openly, n_iterations);
-        let is_uncovered = lacking(
+        let is_uncovered = mark_uncovered(
             input.triangulation,
             &initial,
             Target {
@@ -131,7 +186,7 @@ impl Drape {
             parametrization,
             landmarks: Vec::new(),
             matcher,
-            structure: Structure::new(input.triangulation, input.rest, &initial, &config),
+            structure: StructuralLoss::new(input.triangulation, input.rest, &initial, &config),
             triangulation: Arc::clone(input.triangulation),
             rest: Arc::clone(input.rest),
             iteration: 0,
@@ -177,17 +232,13 @@ impl Drape {
             .resample(x, &sampling, &mut self.rng, &mut self.profile);
         self.guidance.note(&matches, self.pairing.overlap);
 
-        let mut terms = self.add_distance_terms(&matches, &weights);
+        // Eq. 1: L = L_d + λ L_s, the two descended in turn or as one sum.
+        let distance = self.add_distance_loss(&matches, &weights);
         self.matcher.recycle(matches);
         if self.config.descent == Descent::Alternating {
             self.descend(rate)?;
         }
-        terms.extend(accumulate(
-            &self.structure.terms(&weights),
-            self.parametrization.positions(),
-            &mut self.gradient,
-            &mut self.profile,
-        ));
+        let structure = self.add_structural_loss(&weights);
         self.descend(rate)?;
 
         self.iteration += 1;
@@ -195,8 +246,8 @@ impl Drape {
         Ok(Some(StepReport {
             iteration: self.iteration - 1,
             n_iterations: self.n_iterations,
-            total: terms.iter().map(|t| t.weight * t.value).sum(),
-            terms,
+            total: objective::total(&distance, &structure),
+            terms: [distance, structure].concat(),
         }))
     }
 
@@ -276,29 +327,7 @@ impl Drape {
     /// # Errors
     /// A landmark names a vertex that is not there, or its place or target is not finite; the old landmarks stay.
     pub fn set_landmarks(&mut self, landmarks: &[Landmark]) -> Result<(), DrapeError> {
-        let n_vertices = self.gradient.len();
-        for (row, landmark) in landmarks.iter().enumerate() {
-            if let Some(v) = landmark
-                .source
-                .vertices
-                .iter()
-                .find(|v| v.index() >= n_vertices)
-            {
-                return Err(DrapeError::LandmarkOutOfRange {
-                    landmark: row,
-                    vertex: v.index(),
-                    n_vertices,
-                });
-            }
-            let numbers = landmark
-                .source
-                .weights
-                .iter()
-                .chain(&landmark.target.coords);
-            if numbers.into_iter().any(|x| !x.is_finite()) {
-                return Err(DrapeError::LandmarkNotFinite { landmark: row });
-            }
-        }
+        check_landmarks(landmarks, self.gradient.len())?;
         self.landmarks = landmarks.to_vec();
         for landmark in &mut self.landmarks {
             landmark.target = self.frame.to_unit(&landmark.target);
@@ -332,7 +361,7 @@ impl Drape {
     /// Adds iterations to the run, with the weights that it would have ended with; vertices stay anchored where they
     /// were. A run has at most 10⁹ iterations.
     pub fn extend(&mut self, n_iterations: usize) {
-        let n_iterations = n_iterations.min(MAX_ITERATIONS.saturating_sub(self.n_iterations));
+        let n_iterations = n_iterations.min(MAX_COUNT.saturating_sub(self.n_iterations));
         if let Some(&Stage { to, .. }) = self.config.stages.last() {
             self.config.stages.push(Stage {
                 n_iterations,
@@ -365,7 +394,7 @@ impl Drape {
     pub fn restore(&mut self, state: &DrapeState) -> Result<(), DrapeError> {
         let mut reader = state.reader();
         let (iteration, n_iterations) = (reader.count()?, reader.count()?);
-        let possible = self.n_iterations..=MAX_ITERATIONS;
+        let possible = self.n_iterations..=MAX_COUNT;
         if iteration > n_iterations || !possible.contains(&n_iterations) {
             return Err(DrapeError::ForeignState);
         }
@@ -440,6 +469,22 @@ impl Drape {
         self.pairing.overlap
     }
 
+    /// Adds dL_d/dx at the present positions (Eq. 2).
+    fn add_distance_loss(&mut self, matches: &Matches, weights: &Weights) -> Vec<TermReport> {
+        let loss = DistanceLoss::new(matches, &self.landmarks, &self.config);
+        let x = self.parametrization.positions();
+        let (gradient, profile) = (&mut self.gradient, &mut self.profile);
+        objective::accumulate(&loss.terms(weights), x, gradient, profile)
+    }
+
+    /// Adds λ dL_s/dx at the present positions (Eq. 3).
+    fn add_structural_loss(&mut self, weights: &Weights) -> Vec<TermReport> {
+        let terms = self.structure.terms(weights);
+        let x = self.parametrization.positions();
+        objective::accumulate(&terms, x, &mut self.gradient, &mut self.profile)
+    }
+
+    /// One step of the optimiser against the gradient, which is zero afterwards.
     fn descend(&mut self, rate: f64) -> Result<(), DrapeError> {
         self.profile.time("solves and step", || {
             self.parametrization.descend(&self.gradient, rate)
@@ -452,63 +497,5 @@ impl Drape {
         }
         self.gradient.iter_mut().for_each(|g| *g = Vector3::zeros());
         Ok(())
-    }
-
-    /// Eq. 2 and its companions.
-    fn add_distance_terms(&mut self, matches: &Matches, w: &Weights) -> Vec<TermReport> {
-        let worst = WorstDistance {
-            matches,
-            share: self.config.worst_share,
-            tolerance: self.config.worst_tolerance,
-        };
-        let terms: [Term<'_>; 4] = [
-            ("chamfer", w.chamfer, &Chamfer(matches)),
-            ("worst distance", w.worst_distance, &worst),
-            ("normals", w.normal_agreement, &NormalAgreement(matches)),
-            ("landmarks", w.landmark, &LandmarkDistance(&self.landmarks)),
-        ];
-        let x = self.parametrization.positions();
-        accumulate(&terms, x, &mut self.gradient, &mut self.profile)
-    }
-}
-
-impl DrapeInput<'_> {
-    /// All belongs together, is finite, and has an area.
-    fn check(&self) -> Result<(), DrapeError> {
-        let expected = self.rest.len();
-        if self.initial.len() != expected {
-            return Err(DrapeError::LengthMismatch {
-                what: "the initial shape",
-                found: self.initial.len(),
-                expected,
-            });
-        }
-        let corners = self.triangulation.triangles().iter().flatten();
-        let n_named = corners.map(|v| v.index() + 1).max().unwrap_or(0);
-        if n_named > expected {
-            return Err(DrapeError::ForeignTriangulation {
-                n_named,
-                n_vertices: expected,
-            });
-        }
-        check_finite("the rest shape", self.rest.iter().map(|p| &p.coords))?;
-        check_finite("the initial shape", self.initial.iter().map(|p| &p.coords))?;
-        let areas = mesh_core::measure::triangle_areas(self.triangulation, self.rest);
-        if areas.iter().sum::<f64>() > 0.0 {
-            Ok(())
-        } else {
-            Err(DrapeError::NoArea)
-        }
-    }
-}
-
-/// Every entry is finite.
-fn check_finite<'v>(
-    what: &'static str,
-    mut entries: impl Iterator<Item = &'v Vector3>,
-) -> Result<(), DrapeError> {
-    match entries.position(|v| !v.iter().all(|c| c.is_finite())) {
-        Some(vertex) => Err(DrapeError::VertexNotFinite { what, vertex }),
-        None => Ok(()),
     }
 }

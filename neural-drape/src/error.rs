@@ -91,6 +91,12 @@ pub enum DrapeError {
     /// The preconditioner could not be factored.
     #[error("the smoothing operator of the mesh could not be factored")]
     Preconditioner(#[from] mesh_operators::SolveError),
+    /// The settings move a network, which this build cannot.
+    #[error("the settings move a network, and neural-drape was built without its feature `network`; choose the preset standard or quick")]
+    NetworkFeatureOff,
+    /// A parametrization of the caller's own could not start or go on.
+    #[error("the parametrization cannot go on")]
+    Parametrization(#[source] Box<dyn std::error::Error + Send + Sync>),
     /// The network's tensors could not be made.
     #[error("no memory for the network's tensors; choose a narrower network")]
     OutOfMemory,

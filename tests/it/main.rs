@@ -1,7 +1,9 @@
 //! End-to-end tests: the command as a user runs it, files in and files out.
 
+mod architecture;
 mod bad_input;
 mod commands;
+mod data;
 mod landmarks;
 mod real_pair;
 mod regions;

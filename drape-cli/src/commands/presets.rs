@@ -15,8 +15,9 @@ pub(crate) struct Args {
 pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
     match &args.name {
         None => {
-            let names = Preset::names().chain(Preset::studies());
-            say(&names.map(|name| format!("{name}\n")).collect::<String>())?;
+            let studies = Preset::studies().into_iter().map(|study| study.name);
+            let names = Preset::names().map(str::to_owned).chain(studies);
+            say(&names.map(|name| name + "\n").collect::<String>())?;
         }
         Some(name) => say(&Preset::named(name)?.to_toml())?,
     }

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::check::Setting;
+use crate::setting::Setting;
 
 /// Shape of the network that maps initial positions to draped ones.
 ///
@@ -149,6 +149,14 @@ impl NetworkConfig {
 }
 
 impl Encoding {
+    /// The waves' description, if there are any.
+    pub(super) fn frequencies(&self) -> Option<Frequencies> {
+        match *self {
+            Self::None => None,
+            Self::Static(frequencies) | Self::Progressive { frequencies, .. } => Some(frequencies),
+        }
+    }
+
     /// How many features a point has: its coordinates and its waves.
     pub(crate) fn n_features(&self) -> usize {
         match self.frequencies() {

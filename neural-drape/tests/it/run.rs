@@ -5,7 +5,7 @@ use std::sync::Arc;
 use mesh_core::{shapes, Point3, Positions, TriangleSoup, Vector3};
 use neural_drape::{Drape, DrapeConfig};
 
-use crate::setup::{on_ellipsoid, run, short, Pair};
+use crate::setup::{on_ellipsoid, presets, run, short, Pair};
 
 fn mean_distance(x: &Positions, pair: &Pair) -> f64 {
     let hits = pair.target.closest_points(x.as_slice());
@@ -16,7 +16,7 @@ fn mean_distance(x: &Positions, pair: &Pair) -> f64 {
 fn every_preset_starts_at_the_initial_shape_and_comes_closer() {
     for source in [shapes::icosphere(2), shapes::quad_sphere(5)] {
         let pair = Pair::new(source);
-        for preset in DrapeConfig::PRESETS {
+        for preset in presets() {
             let drape = Drape::new(pair.input(), short(preset, 60)).unwrap();
             let start = drape.positions();
             let shift = start
@@ -60,7 +60,7 @@ fn open_sources_and_polygons_are_draped_too() {
 #[test]
 fn same_seed_same_bits_whatever_the_thread_count() {
     let pair = Pair::new(shapes::quad_sphere(6));
-    for preset in DrapeConfig::PRESETS {
+    for preset in presets() {
         let [one, two] = [1, 2].map(|n_threads| {
             let pool = rayon::ThreadPoolBuilder::new()
                 .num_threads(n_threads)

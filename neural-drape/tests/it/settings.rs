@@ -189,3 +189,16 @@ fn runs_that_never_end_are_refused() {
     assert_eq!(drape.n_iterations(), 1_000_000_000);
     assert!(drape.step().unwrap().is_some());
 }
+
+#[cfg(not(feature = "network"))]
+#[test]
+fn presets_that_move_a_network_say_that_this_build_has_none() {
+    let pair = Pair::new(shapes::icosphere(1));
+    for preset in ["network", "paper", "study"] {
+        let answer = Drape::new(pair.input(), short(preset, 5));
+        assert!(
+            matches!(answer, Err(DrapeError::NetworkFeatureOff)),
+            "{preset}"
+        );
+    }
+}

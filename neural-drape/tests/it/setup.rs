@@ -5,7 +5,7 @@ use std::sync::Arc;
 use mesh_core::{
     shapes, Point3, PolygonSoup, Positions, TargetSurface, TriangleSoup, Triangulation,
 };
-use neural_drape::{Drape, DrapeConfig, DrapeError, DrapeInput, StepReport};
+use neural_drape::{Drape, DrapeConfig, DrapeError, DrapeInput, ParametrizationConfig, StepReport};
 
 pub(crate) struct Pair {
     pub(crate) triangulation: Arc<Triangulation>,
@@ -47,6 +47,16 @@ impl Pair {
             landmarks: &[],
         }
     }
+}
+
+/// The presets that this build can run.
+pub(crate) fn presets() -> impl Iterator<Item = &'static str> {
+    let is_there = |preset: &&str| {
+        let config = DrapeConfig::named(preset).expect("a known preset");
+        cfg!(feature = "network")
+            || matches!(config.parametrization, ParametrizationConfig::Vertices(_))
+    };
+    DrapeConfig::PRESETS.into_iter().filter(is_there)
 }
 
 /// A preset with a short run.

@@ -4,7 +4,8 @@ use std::path::PathBuf;
 
 use super::browser::{browser, Page};
 use super::page::probed;
-use super::server::{horse_wolf, Server};
+use super::server::Server;
+use crate::data::horse_wolf;
 use crate::regions::{head_on_skin, HEAD, SKIN};
 
 #[test]

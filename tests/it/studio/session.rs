@@ -7,7 +7,8 @@ use serde_json::Value;
 
 use super::browser::{browser, wait_for, Page};
 use super::page::{find, mark, n_landmarks, number, shown, vertex, Place};
-use super::server::{horse_wolf, Server};
+use super::server::Server;
+use crate::data::horse_wolf;
 use crate::support::run;
 
 /// Enough to see Q rise and to pause in time.

@@ -1,13 +1,19 @@
-//! The terms of the loss: those of the mesh alone, and how any is added and reported.
+//! Eq. 1: `L = L_d + λ L_s`, the loss that a drape descends.
+//!
+//! [`DistanceLoss`] is L_d (Eq. 2) and [`StructuralLoss`] is L_s (Eq. 3), each with the terms that go beyond the paper
+//! beside its own. λ is the weight of the terms of Eq. 3 ([`Weights::lambda`]); its schedule are the stages of the
+//! settings ([`DrapeConfig::weights_at`]).
 
 use std::sync::Arc;
 
-use mesh_core::{Positions, Profile, Triangulation, Vector3, VertexData};
+use mesh_core::{Landmark, Positions, Profile, Triangulation, Vector3, VertexData};
 use mesh_loss::{
-    AreaKl, Conformal, CornerAngle, Drift, Flip, FoldBarrier, LocalShape, Loss, TriangleQuality,
+    AreaKl, Chamfer, Conformal, CornerAngle, Drift, Flip, FoldBarrier, LandmarkDistance,
+    LocalShape, Loss, Matches, NormalAgreement, TriangleQuality, WorstDistance,
 };
 
-use crate::config::{AngleReference, DrapeConfig, Weights};
+use crate::config::{AngleReference, DrapeConfig};
+use crate::schedule::Weights;
 
 /// One term of the loss in one iteration.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,7 +29,13 @@ pub struct TermReport {
 /// Name, weight, term.
 pub(crate) type Term<'t> = (&'static str, f64, &'t dyn Loss);
 
-/// Adds every term that counts and reports it.
+/// The value of Eq. 1: `L = L_d + λ L_s`, with λ and all other weights as they were in the iteration.
+pub(crate) fn total(distance: &[TermReport], structure: &[TermReport]) -> f64 {
+    let terms = distance.iter().chain(structure);
+    terms.map(|t| t.weight * t.value).sum()
+}
+
+/// Adds the gradient of every term that counts and reports the term.
 pub(crate) fn accumulate(
     terms: &[Term<'_>],
     x: &Positions,
@@ -41,8 +53,46 @@ pub(crate) fn accumulate(
         .collect()
 }
 
-/// The terms that depend on the mesh alone.
-pub(crate) struct Structure {
+/// L_d (Eq. 2): the pairs of one iteration and the landmarks.
+pub(crate) struct DistanceLoss<'a> {
+    chamfer: Chamfer<'a>,
+    landmarks: LandmarkDistance<'a>,
+    worst: WorstDistance<'a>,
+    normals: NormalAgreement<'a>,
+}
+
+impl<'a> DistanceLoss<'a> {
+    pub(crate) fn new(
+        matches: &'a Matches,
+        landmarks: &'a [Landmark],
+        config: &DrapeConfig,
+    ) -> Self {
+        Self {
+            chamfer: Chamfer(matches),
+            landmarks: LandmarkDistance(landmarks),
+            worst: WorstDistance {
+                matches,
+                share: config.worst_share,
+                tolerance: config.worst_tolerance,
+            },
+            normals: NormalAgreement(matches),
+        }
+    }
+
+    /// Eq. 2, and between its terms what is beyond the paper.
+    pub(crate) fn terms(&self, w: &Weights) -> [Term<'_>; 4] {
+        [
+            ("chamfer", w.chamfer, &self.chamfer),
+            ("worst distance", w.worst_distance, &self.worst),
+            ("normals", w.normal_agreement, &self.normals),
+            ("landmarks", w.landmark, &self.landmarks),
+        ]
+    }
+}
+
+/// L_s (Eq. 3), angles and areas, with the penalty on skinny triangles (Eq. 4) and the terms beyond the paper that depend
+/// on the mesh alone.
+pub(crate) struct StructuralLoss {
     corner_angle: CornerAngle,
     area_kl: AreaKl,
     triangle_quality: TriangleQuality,
@@ -53,7 +103,7 @@ pub(crate) struct Structure {
     drift: Drift,
 }
 
-impl Structure {
+impl StructuralLoss {
     pub(crate) fn new(
         t: &Arc<Triangulation>,
         rest: &Positions,
@@ -76,7 +126,7 @@ impl Structure {
         }
     }
 
-    /// Eq. 3 and its companions.
+    /// Eq. 3, each term by λ, then Eq. 4 and what is beyond the paper.
     pub(crate) fn terms(&self, w: &Weights) -> [Term<'_>; 8] {
         [
             ("angles", w.corner_angle, &self.corner_angle),

@@ -1,4 +1,4 @@
-//! The parameters θ as dfdx tensors: drawn from the seed, recorded on its tape, moved by its Adam.
+//! The parameters θ as dfdx tensors, and nothing else of dfdx: drawn from the seed, recorded on its tape, moved by its Adam.
 
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -10,7 +10,9 @@ use rand::Rng;
 use rand_chacha::ChaCha8Rng;
 
 use super::encoding::Waves;
-use super::map::{Layer, NetworkMap};
+use super::layer::Layer;
+use super::map::NetworkMap;
+use super::mask::Mask;
 use super::pass::Pass;
 use crate::{DrapeError, StateReader, StateWriter};
 
@@ -41,8 +43,8 @@ pub(super) struct Evaluation {
     pub(super) map: NetworkMap,
     /// Its activations at every point.
     pub(super) pass: Pass,
-    /// Weight of each input of the first layer.
-    pub(super) mask: Vec<f32>,
+    /// What the first layer sees of the features.
+    pub(super) mask: Mask,
 }
 
 impl Parameters {
@@ -86,21 +88,17 @@ impl Parameters {
         }
     }
 
-    /// Copies the parameters into `map`, each input of the first layer weighed by `mask`; inputs past the last
-    /// positive weight are left out.
-    pub(super) fn copy_into(&self, map: &mut NetworkMap, mask: &[f32]) {
+    /// Copies the parameters into `map`, the features masked by `mask`; those that are not revealed are left out.
+    pub(super) fn copy_into(&self, map: &mut NetworkMap, mask: &Mask) {
         map.layers.resize_with(self.layers.len(), Layer::default);
         for (layer, linear) in map.layers.iter_mut().zip(&self.layers) {
             copy(&linear.weight, &mut layer.weight);
             copy(&linear.bias, &mut layer.bias);
         }
         let first = &mut map.layers[0];
-        let n_revealed = mask
-            .iter()
-            .rposition(|&m| m > 0.0)
-            .map_or(0, |last| last + 1);
-        first.weight.truncate(n_revealed * first.bias.len());
-        weigh_inputs(&mut first.weight, first.bias.len(), mask);
+        let n_outputs = first.bias.len();
+        first.weight.truncate(mask.n_revealed() * n_outputs);
+        mask.weigh(&mut first.weight, n_outputs);
         if let Some(rows) = &self.rows {
             rows.copy_into(map.waves.rows.as_flattened_mut());
         }
@@ -167,7 +165,7 @@ impl Parameters {
                 paste(&layer.bias, gradients.get_or_alloc_mut(&linear.bias)?);
             }
             let first = gradients.get_or_alloc_mut(&parameters.layers[0].weight)?;
-            weigh_inputs(first, map.layers[0].bias.len(), mask);
+            mask.weigh(first, map.layers[0].bias.len());
             if let Some(rows) = &parameters.rows {
                 paste(
                     computed.rows.as_flattened(),
@@ -264,13 +262,6 @@ fn copy(tensor: &Matrix, entries: &mut Vec<f32>) {
 /// Puts `part` at the front of `whole`; the rest of `whole` stays.
 fn paste(part: &[f32], whole: &mut [f32]) {
     whole[..part.len()].copy_from_slice(part);
-}
-
-/// Scales the weights of each input by its entry of `mask`.
-fn weigh_inputs(weight: &mut [f32], n_outputs: usize, mask: &[f32]) {
-    for (row, &m) in weight.chunks_mut(n_outputs).zip(mask) {
-        row.iter_mut().for_each(|w| *w *= m);
-    }
 }
 
 #[cfg(test)]

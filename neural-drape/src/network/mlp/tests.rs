@@ -6,6 +6,8 @@ use dfdx::prelude::{
 };
 use mesh_core::{shapes, Point3};
 
+use super::super::config::{Frequencies, Reveal};
+use super::super::encoding::WaveKind;
 use super::*;
 
 /// Small enough to check, with every kind of encoding.
@@ -215,10 +217,10 @@ fn plain_dfdx(network: &Network, weights: &VertexData<Vector3>) -> (Vec<f32>, Gr
     );
     let tensors = network.parameters.tensors();
 
-    let n_features = mask.len();
+    let n_features = mask.alpha().len();
     let mut features = match map.waves.kind {
         _ if n_features == 3 => points.leaky_traced(),
-        encoding::WaveKind::Sine => {
+        WaveKind::Sine => {
             let rows = tensors[tensors.len() - 1].leaky_trace();
             let phases = points
                 .clone()
@@ -226,7 +228,7 @@ fn plain_dfdx(network: &Network, weights: &VertexData<Vector3>) -> (Vec<f32>, Gr
                 .matmul(rows.permute::<_, Axes2<1, 0>>());
             (points.leaky_traced(), (phases * map.waves.gain).sin()).concat_along(Axis::<1>)
         }
-        encoding::WaveKind::SineCosine => {
+        WaveKind::SineCosine => {
             let mut entries = vec![0.0; n * n_features];
             for (p, features) in network.initial.iter().zip(entries.chunks_mut(n_features)) {
                 map.waves.encode(&map.to_input(p), features, None);
@@ -235,7 +237,7 @@ fn plain_dfdx(network: &Network, weights: &VertexData<Vector3>) -> (Vec<f32>, Gr
         }
     };
     let mut diagonal = vec![0.0; n_features * n_features];
-    for (k, m) in mask.iter().enumerate() {
+    for (k, m) in mask.alpha().iter().enumerate() {
         diagonal[k * (n_features + 1)] = *m;
     }
     features = features.matmul(matrix(diagonal, n_features));

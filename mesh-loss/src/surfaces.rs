@@ -1,4 +1,4 @@
-//! The closest points of one resampling, and which of them count.
+//! The closest points of one resampling, in both directions, and which of them count.
 
 use mesh_core::measure::triangle_normal;
 use mesh_core::sampling::TrianglePlace;
@@ -8,7 +8,7 @@ use mesh_core::{
 };
 use rayon::prelude::*;
 
-use crate::matching::{SamplingConfig, SurfaceMatch};
+use crate::matches::{SamplingConfig, SurfaceMatch};
 
 /// The way to the target and back may end a little farther from where it began than [`SamplingConfig::mutual`] says, in
 /// longest sides: the sliding of a surface that fits.
@@ -19,8 +19,8 @@ const LEAST_ATTRACTION: f64 = 1e-6;
 /// A row that no shape has.
 pub(crate) const NO_HINT: u32 = u32::MAX;
 
-/// What both directions of one resampling need.
-pub(crate) struct Side<'a> {
+/// Both surfaces as one resampling sees them, and which of their pairs count.
+pub(crate) struct Surfaces<'a> {
     pub(crate) triangulation: &'a Triangulation,
     pub(crate) x: &'a Positions,
     pub(crate) target: &'a dyn TargetSurface,
@@ -33,7 +33,7 @@ pub(crate) struct Side<'a> {
 /// So many queries are one piece of parallel work.
 const CHUNK: usize = 256;
 
-impl Side<'_> {
+impl Surfaces<'_> {
     /// The closest point of the target to each place of the mesh; none beyond the target.
     ///
     /// `hints` has a row of the target for each place, and holds afterwards the rows that were hit. What `pairs` held is
@@ -52,13 +52,16 @@ impl Side<'_> {
             let hit = self.target.closest_point_from(&query, *hint);
             *hint = hit.location.row();
 
-            let is_on_rim = self.target.is_on_boundary(&hit.location);
-            if is_on_rim && self.config.overlap.mesh_exceeds {
+            let is_on_boundary = self.target.is_on_boundary(&hit.location);
+            if is_on_boundary && self.config.overlap.mesh_exceeds {
                 return None;
             }
             let pair = self.pair(t, w, self.frame.to_unit(&hit.point), &hit.location)?;
             let is_lost = self.config.overlap.mesh_exceeds && !self.is_mutual(&place, &pair.point);
-            (!is_lost).then_some(SurfaceMatch { is_on_rim, ..pair })
+            (!is_lost).then_some(SurfaceMatch {
+                is_on_boundary,
+                ..pair
+            })
         });
         found.collect_into_vec(pairs);
     }
@@ -84,15 +87,19 @@ impl Side<'_> {
             *hint = index;
 
             let t = index as usize;
-            let is_on_rim = self.triangulation.boundary().contains(index, &barycentric);
-            if is_on_rim && self.config.overlap.target_exceeds {
+            let boundary = self.triangulation.boundary();
+            let is_on_boundary = boundary.contains(index, &barycentric);
+            if is_on_boundary && self.config.overlap.target_exceeds {
                 return None;
             }
             let mut pair = self.pair(t, barycentric, point, &sample.location)?;
             if is_on_side(&barycentric) {
                 pair.normal = None;
             }
-            Some(SurfaceMatch { is_on_rim, ..pair })
+            Some(SurfaceMatch {
+                is_on_boundary,
+                ..pair
+            })
         });
         found.collect_into_vec(pairs);
     }
@@ -160,7 +167,7 @@ impl Side<'_> {
             point,
             normal,
             weight: attraction * weight,
-            is_on_rim: false,
+            is_on_boundary: false,
         })
     }
 }

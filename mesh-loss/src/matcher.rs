@@ -1,98 +1,52 @@
-//! Random places on both surfaces and their closest points on the other: what the distance terms look at.
+//! Draws random places on both surfaces and finds their closest points on the other.
 
 use std::sync::Arc;
 
 use mesh_core::measure::triangle_area;
 use mesh_core::sampling::{SeededRng, TrianglePlace, TriangleSampler};
 use mesh_core::{
-    Point3, Positions, Profile, TargetSurface, TriangleBvh, Triangulation, UnitFrame, Vector3,
-    VertexData, VertexId,
+    Positions, Profile, TargetSurface, TriangleBvh, Triangulation, UnitFrame, VertexData,
 };
 
 use crate::hard_places::{HardCorners, HardPlaces};
-use crate::pairing::{Side, NO_HINT};
-
-/// A place on the moving mesh and the fixed point it is matched with.
-#[derive(Clone, Copy, Debug)]
-pub struct SurfaceMatch {
-    /// Corners of the triangle that holds the place.
-    pub triangle: [VertexId; 3],
-    /// Weights of the corners, summing to 1.
-    pub barycentric: [f64; 3],
-    /// The matched point of the target.
-    pub point: Point3,
-    /// Unit normal of the target there, turned to the mesh's side where its sign means nothing; none where the place is
-    /// the one closest to a target point and on an edge of the mesh, where no triangle is to be turned more than others.
-    pub normal: Option<Vector3>,
-    /// How much the pair counts, 0..=1.
-    pub weight: f64,
-    /// Whether the sample's closest point lies on an open boundary of the other surface.
-    pub is_on_rim: bool,
-}
-
-impl SurfaceMatch {
-    /// From the matched target point to the place on the mesh at `x`.
-    pub fn offset(&self, x: &Positions) -> Vector3 {
-        let [a, b, c] = self.triangle.map(|v| x[v].coords);
-        let [wa, wb, wc] = self.barycentric;
-        a * wa + b * wb + c * wc - self.point.coords
-    }
-}
-
-/// Matches in both directions.
-#[derive(Clone, Debug, Default)]
-pub struct Matches {
-    /// Samples of the mesh, each with its closest point on the target.
-    pub to_target: Vec<SurfaceMatch>,
-    /// Samples of the target, each with its closest place on the mesh.
-    pub to_mesh: Vec<SurfaceMatch>,
-    /// Corners of the mesh that are far off, with their closest points; for [`crate::WorstDistance`] alone.
-    pub hard_to_target: Vec<SurfaceMatch>,
-    /// Corners of the target that are far off, with their closest places; for [`crate::WorstDistance`] alone.
-    pub hard_to_mesh: Vec<SurfaceMatch>,
-}
-
-/// How samples are drawn and pairs weighted.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SamplingConfig {
-    /// Samples on each side.
-    pub n_samples: usize,
-    /// Share of the mesh's samples drawn by face instead of by area, 0..=1.
-    pub face_uniform: f64,
-    /// Pairs count by clamp(n·n′ + `normal_bias`, 0.05, 1); none: all pairs count 1.
-    pub normal_bias: Option<f64>,
-    /// How many corners of each shape are kept in mind as far off; as many others are looked at anew each time.
-    pub n_hard: usize,
-    /// Which pairs at open boundaries are left out.
-    pub overlap: Overlap,
-    /// With a target that is only a part, a sample of the mesh counts if the way to its closest point and from there back
-    /// to the mesh ends no farther from it than this share of the way there, ≥ 0. The less, the stricter.
-    pub mutual: f64,
-}
-
-/// Which surface reaches beyond the other. A place beyond has its closest point on the other's open boundary, and
-/// must not be pulled there.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub struct Overlap {
-    /// The target reaches beyond the mesh: its samples whose closest place is on the mesh's boundary are left out.
-    pub target_exceeds: bool,
-    /// The mesh reaches beyond the target: its samples whose closest point is on the target's boundary are left out, and
-    /// so are pairs that oppose each other, and samples whose closest point belongs to another place of the mesh.
-    pub mesh_exceeds: bool,
-}
-
-/// How much of each surface lies beyond the other, from [`SurfaceMatcher::beyond`]; shares in 0..=1.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Beyond {
-    /// Share of the target's area beyond the mesh.
-    pub of_target: f64,
-    /// Share of the mesh's area beyond the target.
-    pub of_mesh: f64,
-}
+use crate::matches::{Beyond, Matches, Overlap, SamplingConfig, SurfaceMatch};
+use crate::surfaces::{Surfaces, NO_HINT};
 
 /// Draws samples on a moving mesh and on its target and matches each with its closest point.
 ///
 /// The mesh lives in `frame`, the target in its own coordinates; matches are in `frame`.
+///
+/// A plane a quarter above another is a quarter from it, both ways:
+///
+/// ```
+/// use std::sync::Arc;
+/// use mesh_core::sampling::SeededRng;
+/// use mesh_core::{
+///     shapes, Point3, Profile, TargetSurface, TriangleSoup, Triangulation, UnitFrame, Vector3, VertexData,
+/// };
+/// use mesh_loss::{Chamfer, Loss, Overlap, SamplingConfig, SurfaceMatcher};
+///
+/// let (mesh, rest) = shapes::open_grid(4, 4).into_halfedge()?;
+/// let triangulation = Arc::new(Triangulation::new(&mesh, &rest));
+/// let target: Arc<dyn TargetSurface> = Arc::new(TriangleSoup::new(shapes::open_grid(4, 4))?);
+/// let x = rest.map(|p| p + Vector3::z() * 0.25);
+/// let frame = UnitFrame { center: Point3::origin(), scale: 1.0 };
+/// let sampling = SamplingConfig {
+///     n_samples: 100,
+///     face_uniform: 0.5,
+///     normal_bias: None,
+///     n_hard: 0,
+///     overlap: Overlap::default(),
+///     mutual: 1.0,
+/// };
+///
+/// let mut matcher = SurfaceMatcher::new(&triangulation, &x, &target, frame);
+/// let matches = matcher.resample(&x, &sampling, &mut SeededRng::new(7), &mut Profile::off());
+/// let mut gradient = VertexData::new(x.len(), Vector3::zeros());
+/// let value = Chamfer(&matches).accumulate(&x, 1.0, &mut gradient);
+/// assert!((value - 0.5).abs() < 1e-12);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub struct SurfaceMatcher {
     triangulation: Arc<Triangulation>,
     target: Arc<dyn TargetSurface>,
@@ -162,7 +116,7 @@ impl SurfaceMatcher {
         let share = |matches: &[SurfaceMatch]| {
             let n_beyond = matches
                 .iter()
-                .filter(|m| m.is_on_rim && m.offset(x).norm() > distance)
+                .filter(|m| m.is_on_boundary && m.offset(x).norm() > distance)
                 .count();
             n_beyond as f64 / matches.len().max(1) as f64
         };
@@ -196,7 +150,7 @@ impl SurfaceMatcher {
         let samples = profile.time("sampling", || self.target.sample(config.n_samples, rng));
         self.hints.of_places.resize(places.len(), NO_HINT);
         self.hints.of_samples.resize(samples.len(), NO_HINT);
-        let side = Side {
+        let surfaces = Surfaces {
             triangulation: &self.triangulation,
             x,
             target: self.target.as_ref(),
@@ -212,18 +166,18 @@ impl SurfaceMatcher {
             ..
         } = std::mem::take(&mut self.used);
         profile.time("closest on target", || {
-            side.match_places(&places, &mut hints.of_places, pairs);
+            surfaces.match_places(&places, &mut hints.of_places, pairs);
             refill(&mut to_target, pairs);
         });
         profile.time("closest on mesh", || {
-            side.match_samples(&samples, &mut hints.of_samples, pairs);
+            surfaces.match_samples(&samples, &mut hints.of_samples, pairs);
             refill(&mut to_mesh, pairs);
         });
         Matches {
             to_target,
             to_mesh,
-            hard_to_target: profile.time("worst places", || hard.match_mesh(&side, rng)),
-            hard_to_mesh: profile.time("worst places", || hard.match_target(&side, rng)),
+            hard_to_target: profile.time("worst places", || hard.match_mesh(&surfaces, rng)),
+            hard_to_mesh: profile.time("worst places", || hard.match_target(&surfaces, rng)),
         }
     }
 
