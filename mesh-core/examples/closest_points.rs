@@ -7,7 +7,7 @@ use std::error::Error;
 use std::time::Instant;
 
 use mesh_core::sampling::SeededRng;
-use mesh_core::{io, shapes, Aabb, Point3, TargetSurface, TriangleSoup};
+use mesh_core::{io, shapes, Point3, TargetSurface, TriangleSoup};
 
 const N_QUERIES: usize = 1_000_000;
 
@@ -25,7 +25,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         start.elapsed()
     );
 
-    let queries = queries(surface.bounds());
+    let queries = queries(&surface);
     let start = Instant::now();
     let closest = surface.closest_points(&queries);
     let mean = closest
@@ -50,10 +50,11 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Anywhere in a box 1.5 times as large.
-fn queries(bounds: Aabb) -> Vec<Point3> {
+/// Random points of the surface, each moved by up to a tenth of the longest side along every axis.
+fn queries(surface: &TriangleSoup) -> Vec<Point3> {
     let mut rng = SeededRng::new(0);
-    let (center, half) = (bounds.center(), 0.75 * (bounds.max - bounds.min));
-    let mut query = || center + half.map(|h| h * rng.uniform_in(-1.0..1.0));
-    (0..N_QUERIES).map(|_| query()).collect()
+    let reach = 0.1 * surface.bounds().longest_side();
+    let samples = surface.sample(N_QUERIES, &mut rng);
+    let mut moved = |p: Point3| p.map(|c| c + rng.uniform_in(-reach..reach));
+    samples.into_iter().map(|s| moved(s.point)).collect()
 }
