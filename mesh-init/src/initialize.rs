@@ -38,7 +38,8 @@ pub struct Initial {
 /// there. Two landmarks on one vertex pull it to the middle. Works in the frame of the box, so units do not
 /// matter. Where targets change again and again, [`InteractiveInit`](crate::InteractiveInit) is quicker. Source: Mesh
 /// Draping, Correspondence Setup. Departures: fewer than four landmarks, pieces without one; for
-/// [`InitConfig::standard`] see [`SimilarityPrior::LeaveOneOut`](crate::SimilarityPrior::LeaveOneOut) and [`SimilarSolver`](crate::SimilarSolver).
+/// [`InitConfig::standard`] see [`LeaveOneOut`](crate::SimilarityPrior::LeaveOneOut) and
+/// [`SimilarSolver`](crate::SimilarSolver).
 ///
 /// # Errors
 /// Positions that do not belong to the mesh, a landmark that is out of range or not finite, or a deformation that

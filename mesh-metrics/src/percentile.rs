@@ -5,8 +5,8 @@
 /// Of n values in ascending order `v₀ ≤ … ≤ vₙ₋₁`, the percentile at share s is at the place `p = s (n − 1)`:
 /// `v_⌊p⌋ + (p − ⌊p⌋) (v_⌊p⌋₊₁ − v_⌊p⌋)`. At 0 it is the smallest value, at 0.5 the median, at 1 the largest.
 ///
-/// `shares`: each in 0..=1; one outside gives the value at the nearer end. Units are those of the values. Degenerate input: 0 where
-/// there is no value. Source: definition 7 of Hyndman and Fan 1996. Departures: none.
+/// `shares`: each in 0..=1; one outside gives the value at the nearer end. Units are those of the values. Degenerate
+/// input: 0 where there is no value. Source: definition 7 of Hyndman and Fan 1996. Departures: none.
 ///
 /// ```
 /// use mesh_metrics::percentiles;

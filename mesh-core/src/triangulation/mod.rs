@@ -86,8 +86,10 @@ impl Triangulation {
     pub fn simply_cut(&self) -> Option<Self> {
         self.simple.as_ref().map(|triangles| Self {
             connectivity: Connectivity::new(self.n_vertices(), triangles.clone()),
+            faces: self.faces.clone(),
+            parents: self.parents.clone(),
+            face_starts: self.face_starts.clone(),
             simple: None,
-            ..self.clone()
         })
     }
 
