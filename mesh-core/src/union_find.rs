@@ -112,8 +112,8 @@ mod tests {
                         (is_reached[a], is_reached[b]) = (either, either);
                     }
                 }
-                for other in 0..12 {
-                    prop_assert_eq!(is_reached[other], sets.find(start) == sets.find(other));
+                for (other, is_reached) in is_reached.into_iter().enumerate() {
+                    prop_assert_eq!(is_reached, sets.find(start) == sets.find(other));
                 }
             }
         }

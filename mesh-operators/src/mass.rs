@@ -65,6 +65,39 @@ mod tests {
         }
     }
 
+    /// The circumcentre lies outside: the obtuse corner keeps half of the area 1, wherever it stands in the triangle.
+    #[test]
+    fn obtuse_triangle_gives_half_to_its_obtuse_corner() {
+        let corners = [[0., 0., 0.], [4., 0., 0.], [1.5, 0.5, 0.]].map(Point3::from);
+        for obtuse in 0..3 {
+            let turned = [0, 1, 2].map(|k: usize| corners[(k + 2 + 3 - obtuse) % 3]);
+            let mut expected = [0.25; 3];
+            expected[obtuse] = 0.5;
+            for (got, expected) in voronoi_parts(turned).into_iter().zip(expected) {
+                assert!((got - expected).abs() < 1e-15, "{got} {expected}");
+            }
+        }
+    }
+
+    /// Against the area of the Voronoi cells themselves: between the midpoints of the sides and the circumcentre.
+    #[test]
+    fn acute_triangle_splits_at_its_circumcentre() {
+        // Circumcentre (2, 1): at equal distance √5 from all corners.
+        let corners = [[0., 0., 0.], [4., 0., 0.], [1., 3., 0.]].map(Point3::from);
+        let centre = Point3::new(2.0, 1.0, 0.0);
+        let cell = |k: usize| {
+            let (a, b, c) = (corners[k], corners[(k + 1) % 3], corners[(k + 2) % 3]);
+            let halves = [nalgebra::center(&a, &b), nalgebra::center(&a, &c)];
+            halves
+                .map(|m| triangle_area([a, m, centre]))
+                .iter()
+                .sum::<f64>()
+        };
+        for (k, part) in voronoi_parts(corners).into_iter().enumerate() {
+            assert!((part - cell(k)).abs() < 1e-14, "{part} {}", cell(k));
+        }
+    }
+
     #[test]
     fn equilateral_triangle_splits_evenly() {
         let parts = voronoi_parts(
