@@ -88,10 +88,10 @@ impl Inspection {
                 .corners(&positions)
                 .filter(|&t| measure::triangle_quality(t) < 0.1)
                 .count(),
-            pieces: mesh.pieces().n - unused_vertices,
+            pieces: triangulation.pieces().n - unused_vertices,
             boundary_loops: mesh.boundary_loops().len(),
             non_manifold_edges: mesh.n_cut_edges(),
-            genus: genus(&mesh, used, unused_vertices),
+            genus: genus(&mesh, triangulation.pieces().n, used, unused_vertices),
             box_min: bounds.min.coords.into(),
             box_max: bounds.max.coords.into(),
             area: measure::triangle_areas(&triangulation, &positions)
@@ -112,7 +112,7 @@ impl Inspection {
 }
 
 /// Handles of an orientable surface: `V − E + F + loops = 2 · pieces − 2 g`; none if it is no manifold.
-fn genus(mesh: &HalfedgeMesh, n_used: usize, n_unused: usize) -> Option<usize> {
+fn genus(mesh: &HalfedgeMesh, n_pieces: usize, n_used: usize, n_unused: usize) -> Option<usize> {
     let n_faces = mesh
         .faces()
         .filter(|&f| !mesh.face_vertices(f).is_empty())
@@ -122,7 +122,7 @@ fn genus(mesh: &HalfedgeMesh, n_used: usize, n_unused: usize) -> Option<usize> {
     if !is_manifold || n_faces == 0 {
         return None;
     }
-    let twice = 2 * (mesh.pieces().n - n_unused) as i64
+    let twice = 2 * (n_pieces - n_unused) as i64
         - (n_used as i64 - mesh.n_edges() as i64
             + n_faces as i64
             + mesh.boundary_loops().len() as i64);

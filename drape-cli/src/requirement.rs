@@ -203,7 +203,7 @@ mod tests {
         let target = mesh_core::TriangleSoup::new(mesh_core::shapes::icosphere(1)).unwrap();
         let landmark = mesh_core::Landmark::new(mesh_core::VertexId::new(0), rest.as_slice()[0]);
         let input = mesh_draping::mesh_metrics::EvaluationInput {
-            mesh: &mesh,
+            triangulation: &mesh_core::Triangulation::new(&mesh, &rest),
             rest: &rest,
             draped: &rest,
             target: &target,

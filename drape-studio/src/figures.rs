@@ -124,7 +124,7 @@ impl Heat {
                 false,
             ),
             Self::Stretch => {
-                let stretch = face_stretch(source.mesh(), t, rest, x);
+                let stretch = face_stretch(t, rest, x);
                 ((0..t.len()).map(|k| stretch[t.parent(k)]).collect(), true)
             }
             Self::Angle => {

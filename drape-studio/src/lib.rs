@@ -29,3 +29,8 @@ mod studio;
 
 pub use replay::{replay, Replayed};
 pub use studio::{Options, Studio};
+
+/// The examples of the README, which are tested as those of the documentation are.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

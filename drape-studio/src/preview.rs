@@ -6,6 +6,7 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use mesh_core::{Landmark, Positions};
+use mesh_draping::landmarks::Finding;
 use mesh_draping::{adjusted, initial_deformation, Error, InitialMethod, Note, Source};
 use mesh_init::{InitConfig, InteractiveInit};
 
@@ -169,16 +170,41 @@ fn show(job: &PreviewJob, broadcast: &Broadcast) -> Result<Vec<Note>, Error> {
     Ok(notes)
 }
 
-/// What is suspicious about the landmarks and about the target, in the page's words: it numbers landmarks as its
-/// markers.
+/// What is suspicious about the landmarks, and what of the target was left out.
 fn warnings(job: &PreviewJob) -> Vec<String> {
     let pair = job.displayed.shapes.pair(job.landmarks.clone());
-    let findings = pair.findings().into_iter().map(|mut finding| {
-        for label in finding.labels_mut() {
-            label.index = job.numbers.get(label.index).copied().unwrap_or(label.index);
-        }
-        finding.to_string()
-    });
+    let findings = pair.findings().into_iter();
+    let findings = findings.map(|finding| numbered(finding, &job.numbers).to_string());
     let left_out = pair.target.notes().iter().map(ToString::to_string);
     findings.chain(left_out).collect()
+}
+
+/// The finding with the numbers of the markers in the place of rows.
+fn numbered(mut finding: Finding, numbers: &[usize]) -> Finding {
+    for label in finding.labels_mut() {
+        label.index = numbers.get(label.index).copied().unwrap_or(label.index);
+    }
+    finding
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use mesh_draping::landmarks::Label;
+
+    #[test]
+    fn landmarks_have_the_numbers_of_their_markers() {
+        // The second marker is of a landmark that is half made.
+        let numbers = [1, 3];
+        let exchanged = Finding::Exchanged {
+            a: Label::new(0, Some("nose")),
+            b: Label::new(1, None),
+        };
+        assert_eq!(
+            numbered(exchanged, &numbers).to_string(),
+            "landmark 1 (nose) and landmark 3 are probably exchanged"
+        );
+        let few = Finding::Few { n: 1 };
+        assert_eq!(numbered(few.clone(), &numbers), few);
+    }
 }

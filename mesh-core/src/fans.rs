@@ -1,7 +1,7 @@
 //! Which triangles meet at a place, and the normal there.
 
 use crate::measure::corner_angle;
-use crate::{Point3, Vector3};
+use crate::{Point3, Rows, Vector3, VertexId};
 
 /// A barycentric weight up to this counts as zero: the place is on a side.
 pub const ON_SIDE: f64 = 1e-9;
@@ -10,38 +10,34 @@ pub const ON_SIDE: f64 = 1e-9;
 ///
 /// At an edge or a corner, which of the triangles a closest point belongs to is up to rounding; what is computed there
 /// should see all of them.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct TriangleFans {
-    triangles: Vec<[u32; 3]>,
-    /// Where the fan of each vertex begins in `members`.
-    starts: Vec<u32>,
-    members: Vec<u32>,
+    triangles: Vec<[VertexId; 3]>,
+    at_vertex: Rows<u32>,
 }
 
 impl TriangleFans {
-    /// The fans of triangles over vertices with these rows.
-    pub fn new(triangles: Vec<[u32; 3]>) -> Self {
-        let n_vertices = triangles.iter().flatten().max().map_or(0, |&v| v + 1);
-        let mut starts = vec![0u32; n_vertices as usize + 1];
-        for &v in triangles.iter().flatten() {
-            starts[v as usize + 1] += 1;
-        }
-        for v in 0..n_vertices as usize {
-            starts[v + 1] += starts[v];
-        }
-        let mut next = starts.clone();
-        let mut members = vec![0; 3 * triangles.len()];
-        for (row, t) in (0u32..).zip(&triangles) {
-            for &v in t {
-                members[next[v as usize] as usize] = row;
-                next[v as usize] += 1;
-            }
-        }
+    /// The fans of triangles over `n_vertices` vertices.
+    ///
+    /// # Panics
+    /// If a triangle names a vertex that is not there.
+    pub fn new(n_vertices: usize, triangles: Vec<[VertexId; 3]>) -> Self {
+        let corners = (0u32..).zip(&triangles);
+        let corners = corners.flat_map(|(row, t)| t.map(|v| (v.index(), row)));
         Self {
+            at_vertex: Rows::from_pairs(n_vertices, corners),
             triangles,
-            starts,
-            members,
         }
+    }
+
+    /// The triangles, in order.
+    pub fn triangles(&self) -> &[[VertexId; 3]] {
+        &self.triangles
+    }
+
+    /// The rows of the triangles at a vertex, ascending.
+    pub fn at_vertex(&self, v: VertexId) -> &[u32] {
+        &self.at_vertex[v.index()]
     }
 
     /// Unit normal at a place of triangle `row`: its own inside it, the mean over all triangles that meet where the place
@@ -64,7 +60,7 @@ impl TriangleFans {
             return own;
         };
         let mut sum = Vector3::zeros();
-        for &other in self.fan(at.corner) {
+        for &other in self.at_vertex(at.corner) {
             let vertices = &self.triangles[other as usize];
             let Some((k, mut n)) = at.corner_in(vertices).zip(normal(other)) else {
                 continue;
@@ -83,11 +79,6 @@ impl TriangleFans {
         // Opposite normals cancel up to rounding.
         sum.try_normalize(1e-6)
     }
-
-    fn fan(&self, vertex: u32) -> &[u32] {
-        let [from, to] = [vertex, vertex + 1].map(|v| self.starts[v as usize] as usize);
-        &self.members[from..to]
-    }
 }
 
 /// Whether a place lies on a side or a corner of its triangle.
@@ -97,13 +88,13 @@ pub fn is_on_side(barycentric: &[f64; 3]) -> bool {
 
 /// A corner, or the edge from it to `end`.
 struct Crease {
-    corner: u32,
-    end: Option<u32>,
+    corner: VertexId,
+    end: Option<VertexId>,
 }
 
 impl Crease {
     /// Where a place lies that is not inside its triangle.
-    fn of(triangle: [u32; 3], barycentric: &[f64; 3]) -> Option<Self> {
+    fn of(triangle: [VertexId; 3], barycentric: &[f64; 3]) -> Option<Self> {
         if !is_on_side(barycentric) {
             return None;
         }
@@ -115,7 +106,7 @@ impl Crease {
     }
 
     /// Which corner of a triangle of the fan this starts at; none where the triangle does not touch it.
-    fn corner_in(&self, triangle: &[u32; 3]) -> Option<usize> {
+    fn corner_in(&self, triangle: &[VertexId; 3]) -> Option<usize> {
         let touches = self.end.is_none_or(|end| triangle.contains(&end));
         let k = triangle.iter().position(|&v| v == self.corner)?;
         touches.then_some(k)
@@ -137,7 +128,10 @@ mod tests {
 
     fn normal(triangles: &[[u32; 3]], row: u32, w: [f64; 3], oriented: bool) -> Option<Vector3> {
         let corners = |t: u32| triangles[t as usize].map(|v| Point3::from(CORNERS[v as usize]));
-        TriangleFans::new(triangles.to_vec()).normal(row, &w, oriented, corners, |t| {
+        let of_ids = triangles
+            .iter()
+            .map(|t| t.map(|v| VertexId::new(v as usize)));
+        TriangleFans::new(CORNERS.len(), of_ids.collect()).normal(row, &w, oriented, corners, |t| {
             crate::measure::triangle_normal(corners(t))
         })
     }

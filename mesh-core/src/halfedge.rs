@@ -4,7 +4,7 @@
 //! faces, or by two faces that run the same way, becomes one boundary edge per face. Vertices stay whole, so a
 //! vertex may have several fans of faces around it, and positions stay shared.
 
-use crate::{EdgeId, FaceId, HalfedgeId, TopologyError, VertexId};
+use crate::{EdgeId, FaceId, HalfedgeId, Rows, TopologyError, VertexId};
 
 /// Connectivity of an oriented polygon mesh.
 ///
@@ -15,11 +15,11 @@ pub struct HalfedgeMesh {
     pub(crate) tails: Vec<VertexId>,
     pub(crate) nexts: Vec<HalfedgeId>,
     pub(crate) faces: Vec<Option<FaceId>>,
-    pub(crate) corner_starts: Vec<u32>,
-    pub(crate) corner_vertices: Vec<VertexId>,
+    /// The vertices of each face in loop order.
+    pub(crate) loops: Rows<VertexId>,
+    /// The halfedge that leaves each corner, beside the items of `loops`.
     pub(crate) corner_halfedges: Vec<HalfedgeId>,
-    pub(crate) outgoing_starts: Vec<u32>,
-    pub(crate) outgoing: Vec<HalfedgeId>,
+    pub(crate) outgoing: Rows<HalfedgeId>,
     pub(crate) n_cut_edges: usize,
 }
 
@@ -34,12 +34,12 @@ impl HalfedgeMesh {
 
     /// How many vertices there are, unreferenced ones included.
     pub fn n_vertices(&self) -> usize {
-        self.outgoing_starts.len() - 1
+        self.outgoing.len()
     }
 
     /// How many faces there are, degenerate ones included.
     pub fn n_faces(&self) -> usize {
-        self.corner_starts.len() - 1
+        self.loops.len()
     }
 
     /// How many undirected edges there are, counting each part of a cut edge.
@@ -131,18 +131,17 @@ impl HalfedgeMesh {
 
     /// The vertices of a face in loop order, repeated neighbours removed; empty for a degenerate face.
     pub fn face_vertices(&self, f: FaceId) -> &[VertexId] {
-        &self.corner_vertices[self.corners(f)]
+        &self.loops[f.index()]
     }
 
     /// The halfedges of a face in loop order: the first leaves `face_vertices(f)[0]`.
     pub fn face_halfedges(&self, f: FaceId) -> &[HalfedgeId] {
-        &self.corner_halfedges[self.corners(f)]
+        &self.corner_halfedges[self.loops.range(f.index())]
     }
 
     /// The halfedges that leave a vertex, over all its fans, boundary ones included.
     pub fn outgoing(&self, v: VertexId) -> &[HalfedgeId] {
-        let [from, to] = [v.index(), v.index() + 1].map(|i| self.outgoing_starts[i] as usize);
-        &self.outgoing[from..to]
+        &self.outgoing[v.index()]
     }
 
     /// The vertices joined to `v` by an edge; one that is joined by a cut edge appears once for each part.
@@ -168,46 +167,4 @@ impl HalfedgeMesh {
         }
         loops
     }
-
-    /// The connected piece of each vertex, numbered from 0 in order of first vertex, and how many there are.
-    ///
-    /// Vertices that share a face are in one piece, across cut edges too. An unreferenced vertex is its own piece.
-    pub fn pieces(&self) -> Pieces {
-        let mut piece_of = vec![u32::MAX; self.n_vertices()];
-        let mut n_pieces = 0;
-        let mut stack = Vec::new();
-        for start in self.vertices() {
-            if piece_of[start.index()] != u32::MAX {
-                continue;
-            }
-            stack.push(start);
-            piece_of[start.index()] = n_pieces;
-            while let Some(v) = stack.pop() {
-                for w in self.one_ring(v) {
-                    if piece_of[w.index()] == u32::MAX {
-                        piece_of[w.index()] = n_pieces;
-                        stack.push(w);
-                    }
-                }
-            }
-            n_pieces += 1;
-        }
-        Pieces {
-            of_vertex: piece_of,
-            n: n_pieces as usize,
-        }
-    }
-
-    fn corners(&self, f: FaceId) -> std::ops::Range<usize> {
-        self.corner_starts[f.index()] as usize..self.corner_starts[f.index() + 1] as usize
-    }
-}
-
-/// Connected pieces of a mesh, from [`HalfedgeMesh::pieces`].
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Pieces {
-    /// The piece of each vertex.
-    pub of_vertex: Vec<u32>,
-    /// How many pieces there are.
-    pub n: usize,
 }

@@ -142,14 +142,14 @@ pub fn open_grid(nx: usize, ny: usize) -> PolygonSoup {
     soup(positions, faces)
 }
 
-/// An open cone of `n` triangles: apex at height 1, rim of radius 1 in the plane z = 0.
+/// An open cone of `n` triangles: apex at height 1, base circle of radius 1 in the plane z = 0.
 pub fn cone(n: usize) -> PolygonSoup {
-    let rim = (0..n).map(|k| {
+    let base = (0..n).map(|k| {
         let angle = std::f64::consts::TAU * k as f64 / n as f64;
         Point3::new(angle.cos(), angle.sin(), 0.0)
     });
     let positions = std::iter::once(Point3::new(0.0, 0.0, 1.0))
-        .chain(rim)
+        .chain(base)
         .collect();
     let faces = (0..n as u32)
         .map(|k| vec![0, 1 + k, 1 + (k + 1) % n as u32])

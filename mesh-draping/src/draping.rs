@@ -422,7 +422,7 @@ fn set_up(
 /// Landmarks that do not fit the source, or a deformation that cannot be solved for.
 pub fn adjusted(pair: &Pair, present: &Positions) -> Result<Positions, Error> {
     let input = InitInput {
-        mesh: pair.source.mesh(),
+        triangulation: pair.source.triangulation(),
         rest: pair.source.rest(),
         landmarks: &pair.landmarks,
         target_frame: pair.target.judged().principal_frame(),

@@ -55,7 +55,7 @@ pub fn initial_deformation(pair: &Pair, method: InitialMethod) -> Result<Initial
         None => source.rest().as_ref().clone(),
     };
     let input = InitInput {
-        mesh: source.mesh(),
+        triangulation: source.triangulation(),
         rest: &placed,
         landmarks,
         target_frame: match &pose {

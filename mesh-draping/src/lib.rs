@@ -73,3 +73,8 @@ pub use mesh_core;
 pub use mesh_init;
 pub use mesh_metrics;
 pub use neural_drape;
+
+/// The examples of the README, which are tested as those of the documentation are.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

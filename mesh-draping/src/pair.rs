@@ -32,7 +32,7 @@ impl Pair {
     /// Positions of another mesh, or a coordinate that is not finite.
     pub fn judge(&self, draped: &Positions, truth: Option<&Positions>) -> Result<Report, Error> {
         let input = EvaluationInput {
-            mesh: self.source.mesh(),
+            triangulation: self.source.triangulation(),
             rest: self.source.rest(),
             draped,
             target: self.target.judged().as_ref(),

@@ -6,7 +6,7 @@
 use std::error::Error;
 use std::time::Instant;
 
-use mesh_core::{io, Landmark, Point3, UnitFrame, VertexId};
+use mesh_core::{io, Landmark, Point3, Triangulation, UnitFrame, VertexId};
 use mesh_init::{initialize, InitConfig, InitInput};
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -25,7 +25,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let (mesh, rest) = file.soup().clone().into_halfedge()?;
     let landmarks = read_landmarks(landmarks)?;
     let input = InitInput {
-        mesh: &mesh,
+        triangulation: &Triangulation::new(&mesh, &rest),
         rest: &rest,
         landmarks: &landmarks,
         target_frame: UnitFrame::principal(&io::read_soup(target)?.positions),
@@ -33,9 +33,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     let start = Instant::now();
     let initial = initialize(input, &config)?;
     println!(
-        "{:.3} s, {} vertices carried by the space around them",
+        "{:.3} s, {} vertices on pieces without a landmark",
         start.elapsed().as_secs_f64(),
-        initial.n_carried
+        initial.n_extrapolated
     );
     file.write(out, &initial.positions)?;
     Ok(())

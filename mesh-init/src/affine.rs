@@ -104,25 +104,6 @@ pub fn fit_affine(pairs: &[PointPair], frames: FramePair, prior: SimilarityPrior
     }
 }
 
-/// Distance of each target to where the map fitted to all other pairs takes its source, in the target's units.
-///
-/// A pair far above the rest is probably wrong.
-pub fn leave_one_out_residuals(
-    pairs: &[PointPair],
-    frames: FramePair,
-    prior: SimilarityPrior,
-) -> Vec<f64> {
-    let frames = Frames::of(frames);
-    let unit = frames.to_unit(pairs);
-    let mu = match prior {
-        SimilarityPrior::None => 0.0,
-        SimilarityPrior::LeaveOneOut => best_prior(&unit),
-    };
-    left_out_errors(&unit, mu)
-        .map(|e| e * frames.target_scale)
-        .collect()
-}
-
 /// A pair that counts as `weight` pairs, in boxes of longest side 1.
 pub(crate) struct WeightedPair {
     pub(crate) source: Vector3,

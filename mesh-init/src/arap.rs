@@ -50,7 +50,7 @@ impl ArapSolver {
         rest: &Positions,
         held: &[VertexId],
     ) -> Result<Self, SolveError> {
-        let stay = held_and_unreached(triangulation, rest.len(), held);
+        let stay = held_and_unreached(triangulation, held);
         Ok(Self {
             cells: Cells::new(triangulation, rest),
             solve: FixedSolve::new(&cotan_laplacian(triangulation, rest), &stay)?,
@@ -88,7 +88,7 @@ impl ArapSolver {
     pub fn step(&self, x: &mut Positions, scratch: &mut ArapScratch) -> f64 {
         let rotations = self.rotations(x);
         let energy = self.cells.energy(x, &rotations);
-        let delta = self.cells.carried_laplacian(&rotations);
+        let delta = self.cells.transformed_laplacian(&rotations);
         scratch.x.clear();
         scratch.x.extend(x.iter().map(|p| p.coords));
         self.solve

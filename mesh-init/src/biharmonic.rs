@@ -45,7 +45,7 @@ impl BiharmonicSolver {
         x: &Positions,
         held: &[VertexId],
     ) -> Result<Self, SolveError> {
-        let rows = held_and_unreached(triangulation, x.len(), held);
+        let rows = held_and_unreached(triangulation, held);
         let mass = voronoi_mass(triangulation, x);
         let bending = bilaplacian(&cotan_laplacian(triangulation, x), &mass);
         let solve = FixedSolve::new(&bending, &rows).or_else(|_| {

@@ -15,12 +15,12 @@ pub(crate) struct Cells {
 #[derive(Clone, Debug)]
 struct CellTriangle {
     corners: [VertexId; 3],
-    sides: [Side; 3],
+    edges: [CellEdge; 3],
 }
 
 /// A side from the first to the second of `ends`, and what it was at rest.
 #[derive(Clone, Debug)]
-struct Side {
+struct CellEdge {
     ends: [VertexId; 2],
     weight: f64,
     rest: Vector3,
@@ -32,7 +32,7 @@ impl Cells {
         let triangle = |(&corners, weights): (&[VertexId; 3], [mesh_operators::CotanWeight; 3])| {
             CellTriangle {
                 corners,
-                sides: weights.map(|w| Side {
+                edges: weights.map(|w| CellEdge {
                     ends: w.edge,
                     weight: w.weight,
                     rest: rest[w.edge[1]] - rest[w.edge[0]],
@@ -54,7 +54,7 @@ impl Cells {
         let mut covariances = VertexData::new(x.len(), Matrix3::zeros());
         for triangle in &self.triangles {
             let outer = triangle
-                .sides
+                .edges
                 .iter()
                 .map(|s| (x[s.ends[1]] - x[s.ends[0]]) * s.rest.transpose() * s.weight);
             let sum: Matrix3<f64> = outer.sum();
@@ -70,7 +70,7 @@ impl Cells {
         let mut squares = VertexData::new(n_vertices, 0.0);
         for triangle in &self.triangles {
             let sum: f64 = triangle
-                .sides
+                .edges
                 .iter()
                 .map(|s| s.weight * s.rest.norm_squared())
                 .sum();
@@ -81,9 +81,9 @@ impl Cells {
         squares
     }
 
-    /// `δ_i = Σ_j w_ij F (p_i − p_j)`, the Laplacian of the rest shape with each triangle carried along by `F`, the
+    /// `δ_i = Σ_j w_ij F (p_i − p_j)`, the Laplacian of the rest shape with each triangle transformed by `F`, the
     /// mean frame of its corners: the solution of `L x = δ` has the sides nearest to those.
-    pub(crate) fn carried_laplacian(&self, frames: &VertexData<Matrix3<f64>>) -> Vec<Vector3> {
+    pub(crate) fn transformed_laplacian(&self, frames: &VertexData<Matrix3<f64>>) -> Vec<Vector3> {
         let mut delta = vec![Vector3::zeros(); frames.len()];
         for triangle in &self.triangles {
             let frame = triangle
@@ -92,10 +92,10 @@ impl Cells {
                 .map(|&v| frames[v])
                 .sum::<Matrix3<f64>>()
                 / 3.0;
-            for side in &triangle.sides {
-                let carried = frame * side.rest * side.weight;
-                delta[side.ends[1].index()] += carried;
-                delta[side.ends[0].index()] -= carried;
+            for side in &triangle.edges {
+                let turned = frame * side.rest * side.weight;
+                delta[side.ends[1].index()] += turned;
+                delta[side.ends[0].index()] -= turned;
             }
         }
         delta
@@ -104,12 +104,12 @@ impl Cells {
     /// `Σ_i Σ_e w |e − F_i e₀|² / 3` over all cells.
     pub(crate) fn energy(&self, x: &Positions, frames: &VertexData<Matrix3<f64>>) -> f64 {
         let of_triangle = |t: &CellTriangle| -> f64 {
-            let side = |s: &Side, v: VertexId| {
+            let side = |s: &CellEdge, v: VertexId| {
                 s.weight * (x[s.ends[1]] - x[s.ends[0]] - frames[v] * s.rest).norm_squared()
             };
             t.corners
                 .iter()
-                .map(|&v| t.sides.iter().map(|s| side(s, v)).sum::<f64>())
+                .map(|&v| t.edges.iter().map(|s| side(s, v)).sum::<f64>())
                 .sum()
         };
         self.triangles.iter().map(of_triangle).sum::<f64>() / 3.0

@@ -34,8 +34,9 @@ pub(crate) struct Deformer {
     handles: Vec<(VertexId, LandmarkKind)>,
     all: Option<Field>,
     rigid: Option<Rigid>,
-    led: Vec<VertexId>,
-    carried: Vec<VertexId>,
+    /// Vertices with a handle on their piece, and those without.
+    guided: Vec<VertexId>,
+    extrapolated: Vec<VertexId>,
 }
 
 /// Where handles belong, and where they were, in the frame of the box.
@@ -64,8 +65,8 @@ impl Deformer {
             handle_of.push(row);
         }
         let rows: Vec<VertexId> = handles.iter().map(|&(v, _)| v).collect();
-        let is_led = is_reached(&triangulation, start.len(), &rows);
-        let (led, carried) = start.ids().partition(|&v| is_led[v]);
+        let is_guided = is_reached(&triangulation, &rows);
+        let (guided, extrapolated) = start.ids().partition(|&v| is_guided[v]);
         let (mut all, mut rigid) = (None, None);
         if !rows.is_empty() {
             let shape = Shape {
@@ -84,8 +85,8 @@ impl Deformer {
             handles,
             all,
             rigid,
-            led,
-            carried,
+            guided,
+            extrapolated,
         })
     }
 
@@ -94,12 +95,12 @@ impl Deformer {
         self.frame.scale
     }
 
-    /// How many vertices follow the space around them, since no handle is on their piece.
-    pub(crate) fn n_carried(&self) -> usize {
+    /// How many vertices are moved by the field over space, since no handle is on their piece.
+    pub(crate) fn n_extrapolated(&self) -> usize {
         if self.handles.is_empty() {
             0
         } else {
-            self.carried.len()
+            self.extrapolated.len()
         }
     }
 
@@ -117,7 +118,7 @@ impl Deformer {
         if let Some(rigid) = &self.rigid {
             x = rigid.turn(&shape, &self.handles, &goals, &x)?;
         }
-        self.carry(&mut x)?;
+        self.extrapolate(&mut x)?;
         Ok(x.map(|p| self.frame.from_unit(p)))
     }
 
@@ -153,14 +154,14 @@ impl Deformer {
     }
 
     /// Vertices without a handle on their piece follow the field of those with one.
-    fn carry(&self, x: &mut Positions) -> Result<(), SolveError> {
-        if self.carried.is_empty() {
+    fn extrapolate(&self, x: &mut Positions) -> Result<(), SolveError> {
+        if self.extrapolated.is_empty() {
             return Ok(());
         }
-        let points: Vec<Point3> = self.led.iter().map(|&v| self.start[v]).collect();
-        let moves: Vec<Vector3> = self.led.iter().map(|&v| x[v] - self.start[v]).collect();
+        let points: Vec<Point3> = self.guided.iter().map(|&v| self.start[v]).collect();
+        let moves: Vec<Vector3> = self.guided.iter().map(|&v| x[v] - self.start[v]).collect();
         let field = SpaceExtension::new(&points, &moves, MAX_CENTRES)?;
-        for &v in &self.carried {
+        for &v in &self.extrapolated {
             x[v] = self.start[v] + field.displacement_at(&self.start[v]);
         }
         Ok(())

@@ -1,73 +1,22 @@
 //! From landmarks to the shape that draping starts at.
 
-use mesh_core::{HalfedgeMesh, Landmark, Point3, Positions, Triangulation, UnitFrame};
+use mesh_core::{Landmark, Point3, Positions, Triangulation, UnitFrame};
 
-use crate::affine::{fit_affine, AffineFit, FramePair, PointPair, SimilarityPrior};
+use crate::affine::{fit_affine, AffineFit, FramePair, PointPair};
 use crate::deformer::{Deformer, Pull};
-use crate::{InitError, SimilarConfig};
+use crate::{InitConfig, InitError};
 
 /// What an initial deformation is found from.
 #[derive(Clone, Copy, Debug)]
 pub struct InitInput<'a> {
-    /// The source's connectivity.
-    pub mesh: &'a HalfedgeMesh,
+    /// The source's polygons as triangles.
+    pub triangulation: &'a Triangulation,
     /// The source's shape.
     pub rest: &'a Positions,
     /// Places on the source and where they belong.
     pub landmarks: &'a [Landmark],
     /// Box of the target.
     pub target_frame: UnitFrame,
-}
-
-/// What happens to vertices far from every landmark.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Pinning {
-    /// They follow.
-    None,
-    /// Those farther along the surface than this share of the longest side of the box stay where the affine map put
-    /// them.
-    Beyond(f64),
-}
-
-/// How the landmarks spread over the surface.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Spread {
-    /// A biharmonic displacement field: translations spread.
-    Biharmonic,
-    /// Starting there, rotations and scales spread too.
-    Similar(SimilarConfig),
-}
-
-/// How the initial deformation is found.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct InitConfig {
-    /// How near the affine map stays to a similarity.
-    pub prior: SimilarityPrior,
-    /// What vertices far from every landmark do in the biharmonic field.
-    pub pinning: Pinning,
-    /// How the landmarks spread.
-    pub spread: Spread,
-}
-
-impl InitConfig {
-    /// The paper's: a free affine map and a biharmonic field, pinned beyond 0.4 of the longest side as the authors'
-    /// program does.
-    pub fn paper() -> Self {
-        Self {
-            prior: SimilarityPrior::None,
-            pinning: Pinning::Beyond(0.4),
-            spread: Spread::Biharmonic,
-        }
-    }
-
-    /// Less distortion and fewer folds: limbs turn instead of shearing.
-    pub fn standard() -> Self {
-        Self {
-            prior: SimilarityPrior::LeaveOneOut,
-            pinning: Pinning::None,
-            spread: Spread::Similar(SimilarConfig::standard()),
-        }
-    }
 }
 
 /// The shape that draping starts at.
@@ -77,8 +26,8 @@ pub struct Initial {
     pub positions: Positions,
     /// The affine map under it, with the residual of each landmark before the surface deforms.
     pub affine: AffineFit,
-    /// How many vertices followed the space around them, since no landmark is on their piece.
-    pub n_carried: usize,
+    /// How many vertices have no landmark on their piece: the displacement of the others, extended over space, moved them.
+    pub n_extrapolated: usize,
 }
 
 /// Deforms the source so that its landmarks come to their places.
@@ -89,7 +38,7 @@ pub struct Initial {
 /// there. Two landmarks on one vertex pull it to the middle. Works in the frame of the box, so units do not
 /// matter. Where targets change again and again, [`InteractiveInit`](crate::InteractiveInit) is quicker. Source: Mesh
 /// Draping, Correspondence Setup. Departures: fewer than four landmarks, pieces without one; for
-/// [`InitConfig::standard`] see [`SimilarityPrior::LeaveOneOut`] and [`SimilarSolver`](crate::SimilarSolver).
+/// [`InitConfig::standard`] see [`SimilarityPrior::LeaveOneOut`](crate::SimilarityPrior::LeaveOneOut) and [`SimilarSolver`](crate::SimilarSolver).
 ///
 /// # Errors
 /// Positions that do not belong to the mesh, a landmark that is out of range or not finite, or a deformation that
@@ -106,7 +55,7 @@ pub fn initialize(input: InitInput<'_>, config: &InitConfig) -> Result<Initial, 
     let deformer = deformer(&input, &placed, config)?;
     Ok(Initial {
         positions: deformer.solve(&targets(input.landmarks))?,
-        n_carried: deformer.n_carried(),
+        n_extrapolated: deformer.n_extrapolated(),
         affine,
     })
 }
@@ -122,7 +71,7 @@ pub fn initialize(input: InitInput<'_>, config: &InitConfig) -> Result<Initial, 
 /// As [`initialize`].
 pub fn adjust(input: InitInput<'_>, present: &Positions) -> Result<Positions, InitError> {
     check(&input)?;
-    check_length(input.mesh.n_vertices(), present)?;
+    check_length(input.triangulation.n_vertices(), present)?;
     deformer(&input, present, &InitConfig::paper())?.solve(&targets(input.landmarks))
 }
 
@@ -132,9 +81,8 @@ fn deformer(
     placed: &Positions,
     config: &InitConfig,
 ) -> Result<Deformer, InitError> {
-    let triangulation = Triangulation::new(input.mesh, input.rest);
     let pulls = input.landmarks.iter().map(|l| pull(l, placed));
-    Deformer::new(triangulation, placed, pulls.collect(), config)
+    Deformer::new(input.triangulation.clone(), placed, pulls.collect(), config)
 }
 
 /// What a landmark pulls at: the vertex that counts most.
@@ -162,8 +110,8 @@ pub(crate) fn check_length(n_vertices: usize, x: &Positions) -> Result<(), InitE
 }
 
 fn check(input: &InitInput<'_>) -> Result<(), InitError> {
-    check_length(input.mesh.n_vertices(), input.rest)?;
-    check_landmarks(input.mesh.n_vertices(), input.landmarks)
+    check_length(input.triangulation.n_vertices(), input.rest)?;
+    check_landmarks(input.triangulation.n_vertices(), input.landmarks)
 }
 
 pub(crate) fn check_landmarks(n_vertices: usize, landmarks: &[Landmark]) -> Result<(), InitError> {

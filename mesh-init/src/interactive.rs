@@ -131,7 +131,7 @@ impl InteractiveInit {
             }
         };
         let positions = self.deformed(&kept, landmarks)?;
-        let n_carried = kept.deformer.n_carried();
+        let n_extrapolated = kept.deformer.n_extrapolated();
         let affine = kept.affine.clone().map(|map| AffineFit {
             residuals: residuals(&map, landmarks, &self.rest),
             ..map
@@ -140,7 +140,7 @@ impl InteractiveInit {
         Ok(Initial {
             positions,
             affine: affine.expect("what was placed by a map has one"),
-            n_carried,
+            n_extrapolated,
         })
     }
 

@@ -48,7 +48,7 @@ impl SimilarConfig {
 /// Deformation in which every neighbourhood turns and scales as one, drawn towards landmarks.
 ///
 /// Alternates between the frames `F_i = s_i R_i` that carry the surroundings of each vertex, and
-/// `(L + b² L M⁻¹ L + W) x = (I + b² L M⁻¹) δ(F) + W u`, where `δ(F)` is the Laplacian of the rest shape carried by the
+/// `(L + b² L M⁻¹ L + W) x = (I + b² L M⁻¹) δ(F) + W u`, where `δ(F)` is the Laplacian of the rest shape transformed by the
 /// frames, `b` the bending length and `W` the landmark weights. With `F = I` and large `b` that is the biharmonic
 /// displacement; unlike it, a limb that turns keeps its shape.
 ///
@@ -102,7 +102,7 @@ impl SimilarSolver {
         }
         let system = &laplacian + &(&bending * &laplacian) + diagonal(pull.into_iter());
         let is_landmark = |v: &VertexId| landmarks.contains(v);
-        let stay = held_and_unreached(triangulation, n, landmarks);
+        let stay = held_and_unreached(triangulation, landmarks);
         let stay: Vec<VertexId> = stay.into_iter().filter(|v| !is_landmark(v)).collect();
         Ok(Self {
             solve: FixedSolve::new(&system, &stay)?,
@@ -129,7 +129,7 @@ impl SimilarSolver {
         let mut x = guess.clone();
         let mut scratch = FixedSolveScratch::default();
         for _ in 0..self.config.max_steps {
-            let delta = self.cells.carried_laplacian(&self.frames(&x));
+            let delta = self.cells.transformed_laplacian(&self.frames(&x));
             let mut right = multiply(&self.bending, &delta);
             for (r, d) in right.iter_mut().zip(&delta) {
                 *r += d;

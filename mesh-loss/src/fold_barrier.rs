@@ -31,7 +31,7 @@ impl FoldBarrier {
     /// The barrier for a mesh whose rest shape is `rest`; `limit` in −1..=1 is the cosine at which an edge that was
     /// flatter at rest begins to count.
     pub fn new(triangulation: &Arc<Triangulation>, rest: &Positions, limit: f64) -> Self {
-        let edges = triangulation.interior_edges();
+        let edges: Vec<_> = triangulation.interior_edges().collect();
         let normals = normals(triangulation, rest);
         let limits = edges
             .iter()
@@ -145,7 +145,7 @@ mod tests {
         let barrier = FoldBarrier::new(&triangulation, &rest, 0.3);
         let near = [3, 30, 31, 100].map(VertexId::new);
         let rows = barrier.edges_near(&near);
-        assert!(rows.len() < triangulation.interior_edges().len() / 4);
+        assert!(rows.len() < triangulation.interior_edges().count() / 4);
 
         let mut all = VertexData::new(x.len(), Vector3::zeros());
         let mut some = all.clone();

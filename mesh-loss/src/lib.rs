@@ -38,7 +38,6 @@
 //! `examples/own_descent.rs` is a whole descent on terms of this crate.
 
 mod area_kl;
-mod boundary;
 mod chamfer;
 mod conformal;
 mod corner_angle;
@@ -73,3 +72,8 @@ pub use matches::{Beyond, Matches, Overlap, SamplingConfig, SurfaceMatch};
 pub use normal_agreement::NormalAgreement;
 pub use triangle_quality::TriangleQuality;
 pub use worst_distance::WorstDistance;
+
+/// The examples of the README, which are tested as those of the documentation are.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

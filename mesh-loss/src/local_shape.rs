@@ -1,6 +1,6 @@
 //! Every one-ring stays a turned and scaled copy of itself.
 
-use mesh_core::{nearest_rotation, Positions, Triangulation, Vector3, VertexData, VertexId};
+use mesh_core::{nearest_rotation, Positions, Rows, Triangulation, Vector3, VertexData, VertexId};
 use nalgebra::Matrix3;
 
 use crate::Loss;
@@ -15,8 +15,8 @@ use crate::Loss;
 /// Source: beyond the paper, after as-similar-as-possible deformation (Sorkine and Alexa 2007 with a free scale). Off
 /// in `paper`.
 pub struct LocalShape {
-    starts: Vec<u32>,
-    neighbours: Vec<u32>,
+    /// The neighbours of each vertex; the values below lie beside them.
+    rings: Rows<u32>,
     rest: Vec<Vector3>,
     weights: Vec<f64>,
     rest_square: Vec<f64>,
@@ -25,34 +25,24 @@ pub struct LocalShape {
 impl LocalShape {
     /// The term that keeps the one-rings of `rest` over the edges of `triangulation`.
     pub fn new(triangulation: &Triangulation, rest: &Positions) -> Self {
-        let mut sides: Vec<[u32; 2]> = triangulation
-            .triangles()
-            .iter()
-            .flat_map(|&[a, b, c]| [[a, b], [b, a], [b, c], [c, b], [c, a], [a, c]])
-            .map(|pair| pair.map(|v| v.index() as u32))
-            .collect();
-        sides.sort_unstable();
-        sides.dedup();
         let p = rest.as_slice();
-        let edge = |&[i, j]: &[u32; 2]| p[j as usize] - p[i as usize];
-        sides.retain(|side| edge(side).norm_squared() > f64::MIN_POSITIVE);
-
-        let edges: Vec<Vector3> = sides.iter().map(edge).collect();
-        let mut starts = vec![0u32; p.len() + 1];
-        let mut rest_square = vec![0.0; p.len()];
-        for ([i, _], r) in sides.iter().zip(&edges) {
-            starts[*i as usize + 1] += 1;
-            rest_square[*i as usize] += r.norm();
-        }
-        for i in 0..p.len() {
-            starts[i + 1] += starts[i];
-        }
+        let edge = |i: usize, j: u32| p[j as usize] - p[i];
+        let rings = Rows::from_lists(triangulation.vertices().map(|v| {
+            let around = triangulation.vertex_neighbours(v).iter();
+            let around = around.map(|w| w.index() as u32);
+            around.filter(move |&j| edge(v.index(), j).norm_squared() > f64::MIN_POSITIVE)
+        }));
+        let edges: Vec<Vector3> = (0..rings.len())
+            .flat_map(|i| rings[i].iter().map(move |&j| edge(i, j)))
+            .collect();
+        let sum = |i: usize| edges[rings.range(i)].iter().map(|r| r.norm());
         Self {
-            starts,
-            neighbours: sides.iter().map(|s| s[1]).collect(),
+            rest_square: (0..rings.len())
+                .map(|i| sum(i).fold(0.0, |sum, r| sum + r))
+                .collect(),
             weights: edges.iter().map(|r| 1.0 / r.norm()).collect(),
             rest: edges,
-            rest_square,
+            rings,
         }
     }
 }
@@ -68,7 +58,7 @@ impl LocalShape {
             let frame = self.frame(x.as_slice(), i);
             let (mut sum, mut total) = (Vector3::zeros(), 0.0);
             for k in self.ring(i) {
-                let j = self.neighbours[k] as usize;
+                let j = self.rings.items()[k] as usize;
                 let carried = (frame + self.frame(x.as_slice(), j)) * self.rest[k] * 0.5;
                 sum += (x.as_slice()[j].coords - carried) * self.weights[k];
                 total += self.weights[k];
@@ -80,14 +70,14 @@ impl LocalShape {
     }
 
     fn ring(&self, i: usize) -> std::ops::Range<usize> {
-        self.starts[i] as usize..self.starts[i + 1] as usize
+        self.rings.range(i)
     }
 
     /// The turn and scale that carry the one-ring of vertex `i` at rest best to where it is.
     fn frame(&self, x: &[mesh_core::Point3], i: usize) -> Matrix3<f64> {
         let mut covariance = Matrix3::zeros();
         for k in self.ring(i) {
-            let e = x[self.neighbours[k] as usize] - x[i];
+            let e = x[self.rings.items()[k] as usize] - x[i];
             covariance += (e * self.weights[k]) * self.rest[k].transpose();
         }
         let rotation = nearest_rotation(&covariance);
@@ -106,7 +96,7 @@ impl Loss for LocalShape {
             let mut covariance = Matrix3::zeros();
             let mut square = 0.0;
             for k in ring.clone() {
-                let e = x[self.neighbours[k] as usize] - x[i];
+                let e = x[self.rings.items()[k] as usize] - x[i];
                 square += self.weights[k] * e.norm_squared();
                 covariance += (e * self.weights[k]) * self.rest[k].transpose();
             }
@@ -121,7 +111,7 @@ impl Loss for LocalShape {
 
             let scale = 2.0 * weight * share * fit;
             for k in ring {
-                let j = self.neighbours[k] as usize;
+                let j = self.rings.items()[k] as usize;
                 let e = x[j] - x[i];
                 let g = (e * (c / square) - rotation * self.rest[k]) * (scale * self.weights[k]);
                 grad[j] += g;

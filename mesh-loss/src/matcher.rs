@@ -5,11 +5,9 @@ use std::sync::Arc;
 use mesh_core::measure::triangle_area;
 use mesh_core::sampling::{SeededRng, TrianglePlace, TriangleSampler};
 use mesh_core::{
-    Positions, Profile, TargetSurface, TriangleBvh, TriangleFans, Triangulation, UnitFrame,
-    VertexData,
+    Positions, Profile, TargetSurface, TriangleBvh, Triangulation, UnitFrame, VertexData,
 };
 
-use crate::boundary::Boundary;
 use crate::hard_places::{HardCorners, HardPlaces};
 use crate::matches::{Beyond, Matches, Overlap, SamplingConfig, SurfaceMatch};
 use crate::surfaces::{Surfaces, NO_HINT};
@@ -54,8 +52,6 @@ pub struct SurfaceMatcher {
     target: Arc<dyn TargetSurface>,
     frame: UnitFrame,
     bvh: TriangleBvh,
-    fans: TriangleFans,
-    boundary: Boundary,
     by_face: TriangleSampler,
     hints: Hints,
     hard: HardPlaces,
@@ -78,8 +74,6 @@ impl SurfaceMatcher {
             target: Arc::clone(target),
             frame,
             bvh: TriangleBvh::new(triangulation.corners(x).collect()),
-            fans: TriangleFans::new(triangulation.rows()),
-            boundary: Boundary::new(triangulation, x.len()),
             by_face: TriangleSampler::new(std::iter::repeat_n(1.0, triangulation.len())),
             hints: Hints::default(),
             hard: HardPlaces::new(triangulation, x.len(), target.as_ref()),
@@ -98,7 +92,7 @@ impl SurfaceMatcher {
 
     /// Whether the mesh ends openly anywhere.
     pub fn has_boundary(&self) -> bool {
-        !self.boundary.is_empty()
+        !self.triangulation.boundary().is_empty()
     }
 
     /// How much of each surface lies beyond the other, as a share of `n_samples` random places on each: their closest
@@ -162,8 +156,6 @@ impl SurfaceMatcher {
             target: self.target.as_ref(),
             frame: self.frame,
             bvh: &self.bvh,
-            fans: &self.fans,
-            boundary: &self.boundary,
             attraction: self.attraction.as_ref(),
             config,
         };

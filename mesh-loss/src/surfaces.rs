@@ -4,11 +4,10 @@ use mesh_core::measure::triangle_normal;
 use mesh_core::sampling::TrianglePlace;
 use mesh_core::{
     is_on_side, Location, NormalSign, Point3, Positions, SurfaceSample, TargetSurface, TriangleBvh,
-    TriangleFans, Triangulation, UnitFrame, Vector3, VertexData, VertexId,
+    Triangulation, UnitFrame, Vector3, VertexData, VertexId,
 };
 use rayon::prelude::*;
 
-use crate::boundary::Boundary;
 use crate::matches::{SamplingConfig, SurfaceMatch};
 
 /// The way to the target and back may end a little farther from where it began than [`SamplingConfig::mutual`] says, in
@@ -27,8 +26,6 @@ pub(crate) struct Surfaces<'a> {
     pub(crate) target: &'a dyn TargetSurface,
     pub(crate) frame: UnitFrame,
     pub(crate) bvh: &'a TriangleBvh,
-    pub(crate) fans: &'a TriangleFans,
-    pub(crate) boundary: &'a Boundary,
     pub(crate) attraction: Option<&'a VertexData<f64>>,
     pub(crate) config: &'a SamplingConfig,
 }
@@ -90,7 +87,8 @@ impl Surfaces<'_> {
             *hint = index;
 
             let t = index as usize;
-            let is_on_boundary = self.boundary.holds(t, barycentric);
+            let boundary = self.triangulation.boundary();
+            let is_on_boundary = boundary.contains(index, &barycentric);
             if is_on_boundary && self.config.overlap.target_exceeds {
                 return None;
             }
@@ -111,7 +109,8 @@ impl Surfaces<'_> {
         let triangles = self.triangulation.triangles();
         let corners = |row: u32| triangles[row as usize].map(|v| self.x[v]);
         let normal = |row: u32| triangle_normal(corners(row));
-        self.fans
+        self.triangulation
+            .fans()
             .normal(t as u32, barycentric, true, corners, normal)
     }
 

@@ -1,7 +1,7 @@
 //! All figures about one result, by the number of faces of source and target.
 
 use criterion::{criterion_group, criterion_main, BenchmarkId, Criterion, Throughput};
-use mesh_core::{shapes, TriangleSoup};
+use mesh_core::{shapes, TriangleSoup, Triangulation};
 use mesh_metrics::{evaluate, EvaluationConfig, EvaluationInput};
 
 fn evaluate_a_sphere(criterion: &mut Criterion) {
@@ -13,8 +13,9 @@ fn evaluate_a_sphere(criterion: &mut Criterion) {
             .expect("the shape is sound");
         let target = TriangleSoup::new(shapes::quad_sphere(n + 3)).expect("the shape is sound");
         let draped = rest.map(|p| p * (1.0 + 0.1 * (5.0 * p.x).sin()));
+        let triangulation = Triangulation::new(&mesh, &rest);
         let input = EvaluationInput {
-            mesh: &mesh,
+            triangulation: &triangulation,
             rest: &rest,
             draped: &draped,
             target: &target,

@@ -23,11 +23,10 @@ pub fn folded_edges(
 ) -> Vec<TriangulationEdge> {
     let [before, after] = [rest, draped].map(|x| normals(triangulation, x));
     let cosine = |n: &[Vector3], [s, t]: [usize; 2]| n[s].dot(&n[t]);
-    let mut edges = triangulation.interior_edges();
-    edges.retain(|e| {
+    let is_folded = |e: &TriangulationEdge| {
         cosine(&after, e.triangles) < FOLD_COSINE && cosine(&before, e.triangles) >= FOLD_COSINE
-    });
-    edges
+    };
+    triangulation.interior_edges().filter(is_folded).collect()
 }
 
 /// Quality `Q_f` of every triangle (Eq. 4).
@@ -122,9 +121,8 @@ mod tests {
         // A single quad: its far corner is brought over the diagonal, into the other triangle.
         let (mesh, rest) = shapes::open_grid(1, 1).into_halfedge().unwrap();
         let triangles = Triangulation::new(&mesh, &rest);
-        let [edge] = triangles.interior_edges()[..] else {
-            panic!("a quad has one diagonal")
-        };
+        let edge = triangles.interior_edges().next();
+        let edge = edge.expect("a quad has a diagonal");
         let off_diagonal = mesh
             .vertices()
             .find(|v| !edge.vertices.contains(v))

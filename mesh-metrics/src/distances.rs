@@ -6,7 +6,7 @@ use mesh_core::{
     VertexData,
 };
 
-use crate::evaluate::EvaluationConfig;
+use crate::config::EvaluationConfig;
 use crate::normalize::common_frame;
 
 /// What the target is, and so what a distance to it means.
@@ -76,11 +76,7 @@ impl SurfaceDistances {
         let to_draped = |points: &[Point3]| lengths(&bvh.closest_points(points), unit);
 
         let samples = sample_by_area(triangulation, draped, config.n_samples, &mut rng);
-        let vertices: Vec<Point3> = triangulation
-            .used_vertices()
-            .iter()
-            .map(|&v| draped[v])
-            .collect();
+        let vertices: Vec<Point3> = triangulation.used_vertices().map(|v| draped[v]).collect();
         let (target_samples, target_vertices) = match TargetKind::of(target) {
             TargetKind::Surface => (
                 target_sample(target, config.n_samples, &mut rng),

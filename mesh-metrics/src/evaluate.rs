@@ -1,18 +1,18 @@
 //! Everything about one result, measured at once.
 
-use mesh_core::{
-    FaceId, HalfedgeMesh, Landmark, Point3, Positions, TargetSurface, Triangulation, UnitFrame,
-};
+use mesh_core::{FaceId, Landmark, Point3, Positions, TargetSurface, Triangulation, UnitFrame};
 
 use crate::chamfer::chamfer;
+use crate::config::EvaluationConfig;
 use crate::defects::{
     folded_edges, mean_angle_deviation, opposed_triangles, skinny_triangles, triangle_qualities,
     SKINNY_QUALITY,
 };
 use crate::dirichlet::{dirichlet_energy, dirichlet_unit_area, face_stretch};
 use crate::distances::{vertex_distances, DirectedDistances, SurfaceDistances, TargetKind};
-use crate::hausdorff::{directed_hausdorff_sampled, hausdorff_sampled, percentiles};
+use crate::hausdorff::{directed_hausdorff_sampled, hausdorff_sampled};
 use crate::normalize::{common_frame, own_frame};
+use crate::percentile::percentiles;
 use crate::q_transfer::{q_transfer, HAUSDORFF_WEIGHT, PAPER_TAU};
 use crate::report::{
     Defects, DistanceSummary, LandmarkFit, LandmarkResidual, Places, Report, TruthError,
@@ -22,8 +22,8 @@ use crate::self_intersection::self_intersections;
 /// A result to be judged.
 #[derive(Clone, Copy)]
 pub struct EvaluationInput<'a> {
-    /// Connectivity of the source.
-    pub mesh: &'a HalfedgeMesh,
+    /// The source's polygons as triangles.
+    pub triangulation: &'a Triangulation,
     /// The source as given.
     pub rest: &'a Positions,
     /// The result, in the target's coordinates.
@@ -34,26 +34,6 @@ pub struct EvaluationInput<'a> {
     pub landmarks: &'a [Landmark],
     /// Where each vertex belongs, if known, in the target's coordinates.
     pub truth: Option<&'a Positions>,
-}
-
-/// How densely surfaces are sampled.
-#[derive(Clone, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
-pub struct EvaluationConfig {
-    /// Random points on each surface, beside its vertices.
-    pub n_samples: usize,
-    /// Same seed, same figures.
-    pub seed: u64,
-}
-
-impl EvaluationConfig {
-    /// 100 000 samples on each surface: another seed moves the Hausdorff distance by less than 0.001.
-    pub const fn standard() -> Self {
-        Self {
-            n_samples: 100_000,
-            seed: 0,
-        }
-    }
 }
 
 /// A result that cannot be judged.
@@ -92,13 +72,14 @@ pub enum EvaluateError {
 /// Positions that do not fit the mesh, a coordinate that is not finite, or a source without a surface.
 ///
 /// ```
-/// use mesh_core::{shapes, TriangleSoup, Vector3};
+/// use mesh_metrics::mesh_core::{shapes, TriangleSoup, Triangulation, Vector3};
 /// use mesh_metrics::{evaluate, EvaluationConfig, EvaluationInput};
 /// let (mesh, rest) = shapes::quad_sphere(4).into_halfedge()?;
 /// let target = TriangleSoup::new(shapes::quad_sphere(4))?;
 /// let draped = rest.map(|p| p + Vector3::new(0.02, 0.0, 0.0)); // a hundredth of the box off
 /// let input = EvaluationInput {
-///     mesh: &mesh, rest: &rest, draped: &draped, target: &target, landmarks: &[], truth: Some(&rest),
+///     triangulation: &Triangulation::new(&mesh, &rest), rest: &rest, draped: &draped, target: &target,
+///     landmarks: &[], truth: Some(&rest),
 /// };
 /// let report = evaluate(input, &EvaluationConfig { n_samples: 1000, seed: 0 })?;
 /// assert!((report.dirichlet - 1.0).abs() < 1e-9 && report.hausdorff < 0.0101);
@@ -110,31 +91,30 @@ pub fn evaluate(
 ) -> Result<Report, EvaluateError> {
     check(&input)?;
     let EvaluationInput {
-        mesh,
+        triangulation,
         rest,
         draped,
         target,
         ..
     } = input;
-    let triangulation = Triangulation::new(mesh, rest);
     if triangulation.is_empty() {
         return Err(EvaluateError::NoTriangles);
     }
     let frame = common_frame(target);
 
-    let distances = SurfaceDistances::measure(&triangulation, draped, target, config);
+    let distances = SurfaceDistances::measure(triangulation, draped, target, config);
     let [to_target, to_draped] = [&distances.to_target, &distances.to_draped].map(summary);
     let hausdorff = hausdorff_sampled(&distances);
-    let dirichlet = dirichlet_unit_area(&triangulation, rest, draped);
-    let (defects, places) = defects(&triangulation, &input);
+    let dirichlet = dirichlet_unit_area(triangulation, rest, draped);
+    let (defects, places) = defects(&input);
 
     Ok(Report {
         target_kind: TargetKind::of(target),
-        n_vertices: mesh.n_vertices(),
-        n_faces: mesh.n_faces(),
+        n_vertices: triangulation.n_vertices(),
+        n_faces: triangulation.n_faces(),
         q_transfer: q_transfer(dirichlet - 1.0, HAUSDORFF_WEIGHT * hausdorff, PAPER_TAU),
         dirichlet,
-        dirichlet_raw: raw_dirichlet(&triangulation, &input, &frame),
+        dirichlet_raw: raw_dirichlet(&input, &frame),
         hausdorff,
         to_target,
         to_draped,
@@ -142,15 +122,15 @@ pub fn evaluate(
         landmarks: landmark_fit(input.landmarks, draped, &frame),
         truth: input
             .truth
-            .map(|truth| truth_error(&triangulation, draped, truth, &frame)),
+            .map(|truth| truth_error(triangulation, draped, truth, &frame)),
         places,
         vertex_distances: vertex_distances(draped, target),
-        face_stretch: face_stretch(mesh, &triangulation, rest, draped),
+        face_stretch: face_stretch(triangulation, rest, draped),
     })
 }
 
 fn check(input: &EvaluationInput<'_>) -> Result<(), EvaluateError> {
-    let expected = input.mesh.n_vertices();
+    let expected = input.triangulation.n_vertices();
     let named = [
         ("rest positions", Some(input.rest)),
         ("draped positions", Some(input.draped)),
@@ -189,17 +169,14 @@ fn summary(distances: &DirectedDistances) -> DistanceSummary {
 }
 
 /// Dirichlet energy with rest in its own unit frame and draped in the common one: sizes are not made equal.
-fn raw_dirichlet(
-    triangulation: &Triangulation,
-    input: &EvaluationInput<'_>,
-    frame: &UnitFrame,
-) -> f64 {
-    let scale = own_frame(triangulation, input.rest).scale / frame.scale;
-    dirichlet_energy(triangulation, input.rest, input.draped) * scale * scale
+fn raw_dirichlet(input: &EvaluationInput<'_>, frame: &UnitFrame) -> f64 {
+    let scale = own_frame(input.triangulation, input.rest).scale / frame.scale;
+    dirichlet_energy(input.triangulation, input.rest, input.draped) * scale * scale
 }
 
-fn defects(triangulation: &Triangulation, input: &EvaluationInput<'_>) -> (Defects, Places) {
+fn defects(input: &EvaluationInput<'_>) -> (Defects, Places) {
     let EvaluationInput {
+        triangulation,
         rest,
         draped,
         target,
@@ -287,8 +264,7 @@ fn truth_error(
 ) -> TruthError {
     let used = triangulation.used_vertices();
     let errors: Vec<f64> = used
-        .iter()
-        .map(|&v| distance(&draped[v], &truth[v], frame))
+        .map(|v| distance(&draped[v], &truth[v], frame))
         .collect();
     let [p95, max] = percentiles(errors.iter().copied(), [0.95, 1.0]);
     TruthError {

@@ -19,36 +19,9 @@ pub fn directed_hausdorff_sampled(distances: &DirectedDistances) -> f64 {
     distances.all().fold(0.0, f64::max)
 }
 
-/// The values below which the shares `shares` of the distances lie, interpolated linearly between neighbours.
-///
-/// `shares` are in [0, 1]. 0 where nothing was measured.
-pub fn percentiles<const N: usize>(
-    distances: impl Iterator<Item = f64>,
-    shares: [f64; N],
-) -> [f64; N] {
-    let mut sorted: Vec<f64> = distances.collect();
-    sorted.sort_unstable_by(f64::total_cmp);
-    shares.map(|share| {
-        let at = share * sorted.len().saturating_sub(1) as f64;
-        let below = sorted.get(at as usize).copied().unwrap_or(0.0);
-        let above = sorted.get(at as usize + 1).copied().unwrap_or(below);
-        below + (above - below) * at.fract()
-    })
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn percentiles_interpolate() {
-        let values = [4.0, 1.0, 3.0, 2.0];
-        assert_eq!(
-            percentiles(values.into_iter(), [0.0, 0.5, 1.0]),
-            [1.0, 2.5, 4.0]
-        );
-        assert_eq!(percentiles(std::iter::empty(), [0.5]), [0.0]);
-    }
 
     #[test]
     fn the_worse_direction_counts_vertices_too() {

@@ -16,27 +16,31 @@
 //! The crate whose types the signatures name, [`mesh_core`], is exported again.
 
 mod chamfer;
+mod config;
 mod defects;
 mod dirichlet;
 mod distances;
 mod evaluate;
 mod hausdorff;
 mod normalize;
+mod percentile;
 mod q_transfer;
 mod report;
 mod self_intersection;
 mod table;
 
 pub use chamfer::{chamfer, Chamfer};
+pub use config::EvaluationConfig;
 pub use defects::{
     folded_edges, mean_angle_deviation, opposed_triangles, skinny_triangles, triangle_qualities,
     FOLD_COSINE, SKINNY_QUALITY,
 };
 pub use dirichlet::{dirichlet_energy, dirichlet_unit_area, face_stretch};
 pub use distances::{vertex_distances, DirectedDistances, SurfaceDistances, TargetKind};
-pub use evaluate::{evaluate, EvaluateError, EvaluationConfig, EvaluationInput};
-pub use hausdorff::{directed_hausdorff_sampled, hausdorff_sampled, percentiles};
+pub use evaluate::{evaluate, EvaluateError, EvaluationInput};
+pub use hausdorff::{directed_hausdorff_sampled, hausdorff_sampled};
 pub use normalize::{common_frame, own_frame, total_area};
+pub use percentile::percentiles;
 pub use q_transfer::{q_transfer, HAUSDORFF_WEIGHT, PAPER_TAU};
 pub use report::{
     Defects, DistanceSummary, LandmarkFit, LandmarkResidual, Places, Report, TruthError,
@@ -44,3 +48,8 @@ pub use report::{
 pub use self_intersection::self_intersections;
 
 pub use mesh_core;
+
+/// The examples of the README, which are tested as those of the documentation are.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

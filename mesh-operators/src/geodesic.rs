@@ -15,13 +15,12 @@ use mesh_core::{Point3, Positions, Triangulation, VertexData, VertexId};
 /// Klein 2002. Departures: none.
 ///
 /// # Panics
-/// If a source is not a row of `x`.
+/// If a source is not a row of `x`, or `x` has not one position for each vertex of the mesh.
 pub fn geodesic_distance_unfolded(
     triangulation: &Triangulation,
     x: &Positions,
     sources: &[VertexId],
 ) -> VertexData<f64> {
-    let fans = Fans::new(triangulation, x.len());
     let mut distance = VertexData::new(x.len(), f64::INFINITY);
     // Distances are ≥ 0, and the bits of such numbers are ordered as the numbers are.
     let mut queue = BinaryHeap::new();
@@ -33,7 +32,7 @@ pub fn geodesic_distance_unfolded(
         if bits != distance[v].to_bits() {
             continue;
         }
-        for &t in fans.of(v) {
+        for &t in triangulation.vertex_triangles(v) {
             let corners = triangulation.triangles()[t as usize];
             for k in 0..3 {
                 let (c, a, b) = (corners[k], corners[(k + 1) % 3], corners[(k + 2) % 3]);
@@ -74,34 +73,6 @@ fn distance_across([a, b, c]: [Point3; 3], [da, db]: [f64; 2]) -> f64 {
         (cx - sx).hypot(cy + sy).min(along_edges)
     } else {
         along_edges
-    }
-}
-
-/// The triangles around each vertex.
-struct Fans {
-    starts: Vec<u32>,
-    triangles: Vec<u32>,
-}
-
-impl Fans {
-    fn new(triangulation: &Triangulation, n_vertices: usize) -> Self {
-        let mut corners: Vec<(VertexId, u32)> = Vec::with_capacity(3 * triangulation.len());
-        for (t, triangle) in triangulation.triangles().iter().enumerate() {
-            corners.extend(triangle.map(|v| (v, t as u32)));
-        }
-        corners.sort_unstable();
-        let starts = (0..=n_vertices)
-            .map(|v| corners.partition_point(|(w, _)| w.index() < v) as u32)
-            .collect();
-        Self {
-            starts,
-            triangles: corners.into_iter().map(|(_, t)| t).collect(),
-        }
-    }
-
-    fn of(&self, v: VertexId) -> &[u32] {
-        let [from, to] = [v.index(), v.index() + 1].map(|i| self.starts[i] as usize);
-        &self.triangles[from..to]
     }
 }
 

@@ -36,3 +36,8 @@ pub use uniform_laplacian::uniform_laplacian;
 
 pub use mesh_core;
 pub use nalgebra_sparse::{self, CsrMatrix};
+
+/// The examples of the README, which are tested as those of the documentation are.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -24,3 +24,8 @@ pub use image::{Image, Pixel};
 pub use model::{Facet, Model};
 pub use raster::{draw, Look, Shot};
 pub use report::{html, Page};
+
+/// The examples of the README, which are tested as those of the documentation are.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -149,17 +149,16 @@ fn uncovered(
     };
 
     let mut is_uncovered = VertexData::new(x.len(), false);
-    let neighbours = triangulation.neighbours(x.len());
     let mut stack: Vec<VertexId> = x
         .ids()
-        .filter(|&v| !neighbours[v].is_empty() && missed(v, FAR))
+        .filter(|&v| triangulation.is_used(v) && missed(v, FAR))
         .collect();
     stack.iter().for_each(|&v| is_uncovered[v] = true);
     if area_share(triangulation, x, &is_uncovered) < least {
         return VertexData::new(x.len(), false);
     }
     while let Some(v) = stack.pop() {
-        for &w in &neighbours[v] {
+        for &w in triangulation.vertex_neighbours(v) {
             if !is_uncovered[w] && missed(w, NEAR) {
                 is_uncovered[w] = true;
                 stack.push(w);

@@ -82,3 +82,8 @@ pub use state::{DrapeState, StateReader, StateWriter};
 pub use studies::Study;
 pub use vertices::{Vertices, VerticesConfig};
 pub use warp::{Warp, WarpError, WarpInput};
+
+/// The examples of the README, which are tested as those of the documentation are.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

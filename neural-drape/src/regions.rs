@@ -121,15 +121,14 @@ impl Guidance {
             })
             .collect();
         let bodies = triangulation
-            .connected_groups(n, |v| regions.rigid[v])
+            .connected_groups(|v| regions.rigid[v])
             .into_iter()
             .filter(|group| group.len() > 1)
             .map(|vertices| Body::new(vertices, rest, initial))
             .collect();
         let is_passive = |v: &VertexId| regions.attraction[*v] == 0.0 || regions.rigid[*v];
-        let is_used = used(triangulation, n);
         let mut passive: Vec<VertexId> = triangulation
-            .connected_groups(n, |v| is_used[v])
+            .connected_groups(|v| triangulation.is_used(v))
             .into_iter()
             .filter(|piece| piece.iter().all(is_passive))
             .flatten()
@@ -139,7 +138,7 @@ impl Guidance {
         passive.iter().for_each(|&v| is_passive_piece[v] = true);
         let active: Vec<VertexId> = initial
             .ids()
-            .filter(|&v| is_used[v] && !is_passive_piece[v])
+            .filter(|&v| triangulation.is_used(v) && !is_passive_piece[v])
             .collect();
         if active.is_empty() {
             passive.clear();
@@ -248,9 +247,9 @@ impl Guidance {
         for &v in &self.active {
             is_unmatched[v] = area[v] > 0.0 && pairs[v] < FEW_PAIRS * density * area[v];
         }
-        let is_boundary = boundary(triangulation, x.len());
+        let is_boundary = boundary(triangulation);
         triangulation
-            .connected_groups(x.len(), |v| is_unmatched[v])
+            .connected_groups(|v| is_unmatched[v])
             .into_iter()
             .filter(|part| !part.iter().any(|&v| is_boundary[v]))
             .flatten()
@@ -324,17 +323,12 @@ fn turn(from: &[Vector3], to: &[Vector3]) -> Matrix3<f64> {
     nearest_rotation(&pairs.map(|(a, b)| b * a.transpose()).sum())
 }
 
-/// Which vertices lie on an open boundary.
-fn boundary(triangulation: &Triangulation, n: usize) -> VertexData<bool> {
-    let mut is_boundary = VertexData::new(n, false);
-    let inner: Vec<_> = triangulation
-        .interior_edges()
-        .iter()
-        .map(|e| e.vertices)
-        .collect();
-    for edge in triangulation.edges() {
-        if inner.binary_search(&edge).is_err() {
-            edge.into_iter().for_each(|v| is_boundary[v] = true);
+/// Which vertices lie on an edge that does not have a triangle on either side: an open boundary, or where surfaces branch.
+fn boundary(triangulation: &Triangulation) -> VertexData<bool> {
+    let mut is_boundary = VertexData::new(triangulation.n_vertices(), false);
+    for (e, edge) in triangulation.edges().iter().enumerate() {
+        if triangulation.edge_triangles(e).len() != 2 {
+            edge.iter().for_each(|&v| is_boundary[v] = true);
         }
     }
     is_boundary
@@ -349,13 +343,4 @@ fn vertex_areas(triangulation: &Triangulation, x: &Positions) -> VertexData<f64>
         t.iter().for_each(|&v| area[v] += share);
     }
     area
-}
-
-/// Which vertices have a triangle.
-fn used(triangulation: &Triangulation, n: usize) -> VertexData<bool> {
-    let mut is_used = VertexData::new(n, false);
-    for &v in triangulation.triangles().iter().flatten() {
-        is_used[v] = true;
-    }
-    is_used
 }

@@ -67,7 +67,7 @@ impl Vertices {
     ) -> Result<Self, DrapeError> {
         let n = initial.len();
         let mean_edge = mean_edge_length(triangulation, initial).max(f64::MIN_POSITIVE);
-        let laplacian = mesh_operators::uniform_laplacian(n, triangulation.edges());
+        let laplacian = mesh_operators::uniform_laplacian(n, triangulation.edges().iter().copied());
         let solver = SpdSolver::new(&preconditioner(&laplacian, mean_edge, config, 0))?;
         Ok(Self {
             config: *config,

@@ -4,6 +4,7 @@
 
 use glam::Vec4;
 
+use super::box32::Box32;
 use super::stack::{sort_down, Entry, Stack};
 use super::topology::{Topology, ABSENT, ITEM};
 use crate::{Aabb, Point3, UnitFrame, Vector3};
@@ -22,21 +23,6 @@ struct Node {
     min: [Vec4; 3],
     max: [Vec4; 3],
     children: [u32; 4],
-}
-
-/// A box in the unit frame.
-#[derive(Clone, Copy)]
-pub(super) struct Box32 {
-    pub(super) min: [f32; 3],
-    pub(super) max: [f32; 3],
-}
-
-impl Box32 {
-    /// The box that holds nothing; finite, so that distances to it are numbers.
-    const EMPTY: Self = Self {
-        min: [f32::MAX; 3],
-        max: [f32::MIN; 3],
-    };
 }
 
 /// A tree of boxes. Items have a row (as given) and a slot (their place in the tree).

@@ -1,5 +1,6 @@
 //! Closest points and first hits on triangles: exact in f64, over an f32 box hierarchy.
 
+mod box32;
 mod box_tree;
 mod morton;
 mod ray;

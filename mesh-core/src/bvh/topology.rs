@@ -5,7 +5,7 @@ use obvhs::bvh2::reinsertion::ReinsertionOptimizer;
 use obvhs::bvh2::Bvh2;
 use obvhs::ploc::{PlocBuilder, PlocSearchDistance, SortPrecision};
 
-use super::box_tree::Box32;
+use super::box32::Box32;
 
 /// Marks a child that is an item; the other bits are its slot.
 pub(super) const ITEM: u32 = 1 << 31;

@@ -1,20 +1,20 @@
 //! Target surfaces: what can be draped onto. A target needs no connectivity.
 
-mod boundary;
 mod denoise;
 mod exposure;
 mod neighbourhood;
+mod open_boundary;
 mod orientation;
 mod point_cloud;
+mod point_tree;
 mod propagate;
 mod stray;
 mod surfels;
 mod triangle_soup;
-mod weld;
+mod welded;
 
-pub use denoise::Denoised;
 pub use exposure::is_exposed;
-pub use point_cloud::PointCloud;
+pub use point_cloud::{Denoised, PointCloud};
 pub use stray::Strays;
 pub use surfels::SurfelCloud;
 pub use triangle_soup::TriangleSoup;
@@ -111,7 +111,7 @@ pub trait TargetSurface: Send + Sync {
     /// Whether the sign of [`Self::normal`] means something.
     fn normal_sign(&self) -> NormalSign;
 
-    /// Whether the place lies on an open boundary of the surface: the rim of a hole, the end of a scan. Cracks are none.
+    /// Whether the place lies on an open boundary of the surface: the edge of a hole, the end of a scan. Cracks are none.
     fn is_on_boundary(&self, location: &Location) -> bool;
 
     /// The smallest box around the surface.

@@ -5,8 +5,8 @@ use std::f64::consts::TAU;
 use nalgebra::{Matrix3, SymmetricEigen};
 use rayon::prelude::*;
 
-use super::point_cloud::PointTree;
-use crate::{Point3, Vector3};
+use super::point_tree::PointTree;
+use crate::{Point3, UnionFind, Vector3};
 
 /// Neighbours that make up a surrounding.
 const K: usize = 24;
@@ -17,13 +17,13 @@ const N_IN_PLANE: usize = 16;
 const FAR: f64 = 3.0;
 /// A group of fewer than this share of the points, spaced wider than this many times what is usual, is stray, too.
 const SMALL: f64 = 0.01;
-const LOOSE: f64 = 1.5;
+const SPARSE: f64 = 1.5;
 /// Neighbours that are kept for propagation.
 pub(super) const N_KEPT: usize = 8;
 /// No neighbour.
 pub(super) const NONE: u32 = u32::MAX;
-/// A gap between the directions to neighbours wider than this (140°) makes a boundary point: on a straight rim it is
-/// 180°. With these three values all points near the rim of a random flat cloud are found, and fewer than 0.3 % of
+/// A gap between the directions to neighbours wider than this (140°) makes a boundary point: on a straight boundary it is
+/// 180°. With these three values all points near the boundary of a random flat cloud are found, and fewer than 0.3 % of
 /// those inside.
 const WIDE: f64 = TAU * 140.0 / 360.0;
 /// Neighbours nearer than this share of the farthest do not count for the gap: their directions are accidental.
@@ -102,7 +102,7 @@ pub(super) fn boundary(neighbourhoods: &[Neighbourhood]) -> Vec<bool> {
 }
 
 /// Rows of points that are no part of the surface: each is much farther from its neighbours than those are from theirs
-/// (after Breunig et al. 2000, "LOF", with the median in place of the mean), or is in a small and loose group.
+/// (after Breunig et al. 2000, "LOF", with the median in place of the mean), or is in a small and sparse group.
 pub(super) fn strays(neighbourhoods: &[Neighbourhood]) -> Vec<u32> {
     let is_alone: Vec<bool> = neighbourhoods
         .iter()
@@ -116,30 +116,23 @@ pub(super) fn strays(neighbourhoods: &[Neighbourhood]) -> Vec<u32> {
     let mut sizes = vec![0usize; neighbourhoods.len()];
     let mut areas = vec![0.0; neighbourhoods.len()];
     for (&g, n) in group_of.iter().zip(neighbourhoods) {
-        sizes[g as usize] += 1;
-        areas[g as usize] += n.area;
+        sizes[g] += 1;
+        areas[g] += n.area;
     }
     let usual = median(neighbourhoods.iter().map(|n| n.area));
-    let is_loose = |g: usize| {
+    let is_sparse = |g: usize| {
         let is_small = (sizes[g] as f64) < SMALL * neighbourhoods.len() as f64;
-        is_small && areas[g] > LOOSE * LOOSE * usual * sizes[g] as f64
+        is_small && areas[g] > SPARSE * SPARSE * usual * sizes[g] as f64
     };
     (0..neighbourhoods.len())
-        .filter(|&row| is_alone[row] || is_loose(group_of[row] as usize))
+        .filter(|&row| is_alone[row] || is_sparse(group_of[row]))
         .map(|row| row as u32)
         .collect()
 }
 
-/// The lowest row of the group of each point: points are joined that are among the nearest of each other.
-fn groups(neighbourhoods: &[Neighbourhood], is_out: &[bool]) -> Vec<u32> {
-    let mut parent: Vec<u32> = (0..neighbourhoods.len() as u32).collect();
-    fn root(parent: &mut [u32], mut row: u32) -> u32 {
-        while parent[row as usize] != row {
-            parent[row as usize] = parent[parent[row as usize] as usize];
-            row = parent[row as usize];
-        }
-        row
-    }
+/// The point that stands for the group of each point: points are joined that are among the nearest of each other.
+fn groups(neighbourhoods: &[Neighbourhood], is_out: &[bool]) -> Vec<usize> {
+    let mut groups = UnionFind::new(neighbourhoods.len());
     for (row, n) in (0u32..).zip(neighbourhoods) {
         let joined = n.nearest.iter().filter(|&&other| {
             other != NONE
@@ -148,14 +141,10 @@ fn groups(neighbourhoods: &[Neighbourhood], is_out: &[bool]) -> Vec<u32> {
                 && !is_out[row as usize]
                 && !is_out[other as usize]
         });
-        for &other in joined {
-            let (a, b) = (root(&mut parent, row), root(&mut parent, other));
-            parent[a.max(b) as usize] = a.min(b);
-        }
+        joined.for_each(|&other| groups.union(row as usize, other as usize));
     }
-    (0..parent.len() as u32)
-        .map(|row| root(&mut parent, row))
-        .collect()
+    let rows = 0..neighbourhoods.len();
+    rows.map(|row| groups.find(row)).collect()
 }
 
 /// The upper median; 0 of nothing.
@@ -262,35 +251,4 @@ fn widest_gap(offsets: &[Vector3], normal: &Vector3) -> f64 {
         .windows(2)
         .map(|w| w[1] - w[0])
         .fold(around, f64::max)
-}
-
-#[cfg(test)]
-mod tests {
-    use crate::{shapes, Point3, PointCloud};
-
-    #[test]
-    fn points_apart_are_strays_and_sparse_regions_are_not() {
-        let mut points = shapes::icosphere(4).positions;
-        assert!(PointCloud::new(points.clone(), None)
-            .unwrap()
-            .strays()
-            .is_empty());
-
-        let n = points.len() as u32;
-        points.extend([[1.6, 0.0, 0.2], [0.0, 0.1, 0.0], [2.0, 2.0, 2.0]].map(Point3::from));
-        points.extend([[2.1, 2.0, 2.1], [2.0, 1.8, 2.0]].map(Point3::from));
-        let cloud = PointCloud::new(points, None).unwrap();
-        assert_eq!(cloud.strays(), (n..n + 5).collect::<Vec<_>>());
-
-        // A spiral over the sphere, ten times as dense at one pole as at the other.
-        let uneven = (0..4000).map(|k| {
-            let z = 1.0 - 2.0 * (f64::from(k) / 4000.0).powi(2);
-            let (r, turn) = ((1.0 - z * z).max(0.0).sqrt(), 2.4 * f64::from(k));
-            Point3::new(r * turn.cos(), r * turn.sin(), z)
-        });
-        assert!(PointCloud::new(uneven.collect(), None)
-            .unwrap()
-            .strays()
-            .is_empty());
-    }
 }

@@ -8,7 +8,7 @@ use std::f64::consts::TAU;
 
 use rayon::prelude::*;
 
-use super::weld::Weld;
+use super::welded::WeldedTriangles;
 use super::NormalSign;
 use crate::bvh::TriangleBvh;
 use crate::measure::{area_vector, triangle_area};
@@ -46,13 +46,13 @@ struct Neighbour {
 
 impl Orientation {
     /// Orients the triangles of `bvh`.
-    pub(super) fn new(weld: &Weld, bvh: &TriangleBvh) -> Self {
-        let neighbours = neighbours(weld);
+    pub(super) fn new(welded: &WeldedTriangles, bvh: &TriangleBvh) -> Self {
+        let neighbours = neighbours(welded);
         let (n_agreeing, n_shared) = agreement(&neighbours);
         let file_agrees =
-            n_shared >= weld.triangles.len() && n_agreeing as f64 >= AGREEING * n_shared as f64;
-        let mut is_flipped = vec![false; weld.triangles.len()];
-        let patches = flood(weld, &neighbours, &mut is_flipped);
+            n_shared >= welded.triangles.len() && n_agreeing as f64 >= AGREEING * n_shared as f64;
+        let mut is_flipped = vec![false; welded.triangles.len()];
+        let patches = flood(welded, &neighbours, &mut is_flipped);
         let n_conflicts = conflicts(&neighbours, &is_flipped);
 
         let areas: Vec<f64> = (0..bvh.len())
@@ -77,7 +77,7 @@ impl Orientation {
                 decided += area;
             }
         }
-        copy_to_doubles(weld, &mut is_flipped);
+        copy_to_doubles(welded, &mut is_flipped);
         let is_trusted =
             decided >= DECIDED * total && n_conflicts as f64 <= DISAGREEING * n_shared as f64;
         Self {
@@ -92,18 +92,18 @@ impl Orientation {
 }
 
 /// The triangle across each side, where exactly two share the edge.
-fn neighbours(weld: &Weld) -> Vec<[Neighbour; 3]> {
+fn neighbours(welded: &WeldedTriangles) -> Vec<[Neighbour; 3]> {
     let none = Neighbour {
         triangle: NONE,
         agrees: true,
     };
-    let mut neighbours = vec![[none; 3]; weld.triangles.len()];
-    for edge in weld.edges() {
+    let mut neighbours = vec![[none; 3]; welded.triangles.len()];
+    for edge in welded.edges() {
         if let [a, b] = edge {
             let agrees = a.is_forward != b.is_forward;
             for (one, other) in [(a, b), (b, a)] {
-                neighbours[one.triangle as usize][one.corner as usize] = Neighbour {
-                    triangle: other.triangle,
+                neighbours[one.face as usize][one.corner as usize] = Neighbour {
+                    triangle: other.face,
                     agrees,
                 };
             }
@@ -119,9 +119,13 @@ fn agreement(neighbours: &[[Neighbour; 3]]) -> (usize, usize) {
 }
 
 /// Patches connected by shared edges, lowest triangle first, turned alike, as most of each are in the file.
-fn flood(weld: &Weld, neighbours: &[[Neighbour; 3]], is_flipped: &mut [bool]) -> Vec<Vec<u32>> {
+fn flood(
+    welded: &WeldedTriangles,
+    neighbours: &[[Neighbour; 3]],
+    is_flipped: &mut [bool],
+) -> Vec<Vec<u32>> {
     let mut is_seen: Vec<bool> = (0u32..)
-        .zip(&weld.originals)
+        .zip(&welded.originals)
         .map(|(row, &first)| row != first)
         .collect();
     let mut patches = Vec::new();
@@ -267,10 +271,10 @@ fn slanted(normal: &Vector3, [p, q, _]: &[Point3; 3], c: f64, d: f64) -> Vector3
 }
 
 /// A double faces the same way as its original.
-fn copy_to_doubles(weld: &Weld, is_flipped: &mut [bool]) {
-    for (row, &original) in weld.originals.iter().enumerate() {
+fn copy_to_doubles(welded: &WeldedTriangles, is_flipped: &mut [bool]) {
+    for (row, &original) in welded.originals.iter().enumerate() {
         if original as usize != row {
-            let (t, first) = (weld.triangles[row], weld.triangles[original as usize]);
+            let (t, first) = (welded.triangles[row], welded.triangles[original as usize]);
             let runs_alike =
                 (0..3).any(|k| [first[k], first[(k + 1) % 3], first[(k + 2) % 3]] == t);
             is_flipped[row] = is_flipped[original as usize] ^ !runs_alike;

@@ -8,7 +8,7 @@ use rayon::prelude::*;
 
 use super::neighbourhood::{Neighbourhood, NONE};
 use super::NormalSign;
-use crate::{Point3, Vector3};
+use crate::{Point3, UnionFind, Vector3};
 
 /// Neighbours steeper than this to each other say nothing about signs.
 const STEEP: f64 = 0.7;
@@ -29,14 +29,14 @@ pub(super) fn orient(
     are_given: bool,
 ) -> NormalSign {
     let keeps_signs = are_given && agreement(points, around) >= AGREEING;
-    let mut patches = Patches::new(around.len());
+    let mut patches = UnionFind::new(around.len());
     for [a, b] in flattest_first(points, around) {
         let is_opposed = around[a as usize].normal.dot(&around[b as usize].normal) < 0.0;
-        patches.join(a, b, !keeps_signs && is_opposed);
+        patches.union_signed(a as usize, b as usize, !keeps_signs && is_opposed);
     }
 
-    let turned: Vec<(u32, bool)> = (0..around.len() as u32)
-        .map(|row| patches.find(row))
+    let turned: Vec<(usize, bool)> = (0..around.len())
+        .map(|row| patches.find_signed(row))
         .collect();
     for (n, &(_, is_flipped)) in around.iter_mut().zip(&turned) {
         if is_flipped {
@@ -125,17 +125,17 @@ fn flattest_first(points: &[Point3], around: &[Neighbourhood]) -> Vec<[u32; 2]> 
 fn turn_outwards(
     points: &[Point3],
     around: &mut [Neighbourhood],
-    turned: &[(u32, bool)],
+    turned: &[(usize, bool)],
     keeps_signs: bool,
 ) {
     let mut sums = vec![Sums::default(); points.len()];
     for ((p, n), &(patch, _)) in points.iter().zip(around.iter()).zip(turned) {
-        let sums = &mut sums[patch as usize];
+        let sums = &mut sums[patch];
         sums.area += n.area;
         sums.position += p.coords * n.area;
     }
     for ((p, n), &(patch, _)) in points.iter().zip(around.iter()).zip(turned) {
-        let sums = &mut sums[patch as usize];
+        let sums = &mut sums[patch];
         let arm = p.coords - sums.position / sums.area;
         sums.volume += arm.dot(&n.normal) * n.area;
         sums.reach += arm.norm() * n.area;
@@ -143,7 +143,7 @@ fn turn_outwards(
 
     let needed = if keeps_signs { OVERRULING } else { 0.0 };
     for (n, &(patch, _)) in around.iter_mut().zip(turned) {
-        let sums = &sums[patch as usize];
+        let sums = &sums[patch];
         if sums.volume < -needed * sums.reach {
             n.normal = -n.normal;
         }
@@ -160,52 +160,4 @@ struct Sums {
     volume: f64,
     /// Integral of the distance from the center.
     reach: f64,
-}
-
-/// Disjoint sets of points, each point with a sign relative to its set.
-struct Patches {
-    /// A parent, and whether the sign differs from the parent's.
-    parents: Vec<(u32, bool)>,
-    sizes: Vec<u32>,
-}
-
-impl Patches {
-    fn new(n: usize) -> Self {
-        Self {
-            parents: (0..n as u32).map(|row| (row, false)).collect(),
-            sizes: vec![1; n],
-        }
-    }
-
-    /// The set of a point, and whether the point is flipped in it.
-    fn find(&mut self, row: u32) -> (u32, bool) {
-        let (mut root, mut is_flipped) = (row, false);
-        while self.parents[root as usize].0 != root {
-            let (parent, differs) = self.parents[root as usize];
-            is_flipped ^= differs;
-            root = parent;
-        }
-        let (mut at, mut rest) = (row, is_flipped);
-        while at != root {
-            let (parent, differs) = std::mem::replace(&mut self.parents[at as usize], (root, rest));
-            rest ^= differs;
-            at = parent;
-        }
-        (root, is_flipped)
-    }
-
-    /// Joins the sets of two points, which end up flipped alike unless they `differ`. One set is left alone.
-    fn join(&mut self, a: u32, b: u32, differ: bool) {
-        let ((a, a_flipped), (b, b_flipped)) = (self.find(a), self.find(b));
-        if a == b {
-            return;
-        }
-        let (small, large) = if self.sizes[a as usize] < self.sizes[b as usize] {
-            (a, b)
-        } else {
-            (b, a)
-        };
-        self.parents[small as usize] = (large, a_flipped ^ b_flipped ^ differ);
-        self.sizes[large as usize] += self.sizes[small as usize];
-    }
 }

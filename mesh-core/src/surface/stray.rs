@@ -6,9 +6,9 @@
 //! in by it is not.
 
 use super::orientation::escaping_share;
-use super::weld::Weld;
+use super::welded::{is_degenerate, WeldedTriangles};
 use crate::measure::{smallest_height, triangle_area, triangle_quality};
-use crate::{Point3, TriangleBvh};
+use crate::{Point3, TriangleBvh, UnionFind};
 
 /// Nothing is called stray unless one patch holds at least this share of the area.
 const MAIN_SHARE: f64 = 0.5;
@@ -53,12 +53,12 @@ impl Strays {
         let rows: Vec<[u32; 3]> = (0..corners.len() as u32)
             .map(|t| [3 * t, 3 * t + 1, 3 * t + 2])
             .collect();
-        let weld = Weld::new(&positions, &rows);
+        let welded = WeldedTriangles::new(&positions, &rows);
         let mut strays = Self {
-            slivers: slivers(&weld, &corners, FLAT * bvh.bounds().longest_side()),
+            slivers: slivers(&welded, &corners, FLAT * bvh.bounds().longest_side()),
             ..Self::default()
         };
-        let patches = patches(&weld);
+        let patches = patches(&welded);
         let areas: Vec<f64> = patches
             .iter()
             .map(|patch| {
@@ -72,7 +72,7 @@ impl Strays {
             .iter()
             .fold((0.0, 0.0f64), |(sum, most), &a| (sum + a, most.max(a)));
         if patches.len() < 2 || largest < MAIN_SHARE * total {
-            strays.add_doubles(&weld);
+            strays.add_doubles(&welded);
             return strays;
         }
         for (patch, &area) in patches.iter().zip(&areas) {
@@ -83,16 +83,16 @@ impl Strays {
                 strays.hidden.extend(patch);
             }
         }
-        strays.add_doubles(&weld);
+        strays.add_doubles(&welded);
         strays
     }
 
     /// A double goes with its original.
-    fn add_doubles(&mut self, weld: &Weld) {
+    fn add_doubles(&mut self, welded: &WeldedTriangles) {
         for rows in [&mut self.slivers, &mut self.crumbs, &mut self.hidden] {
             rows.sort_unstable();
             let doubles: Vec<u32> = (0u32..)
-                .zip(&weld.originals)
+                .zip(&welded.originals)
                 .filter(|&(row, first)| row != *first && rows.binary_search(first).is_ok())
                 .map(|(row, _)| row)
                 .collect();
@@ -103,14 +103,14 @@ impl Strays {
 }
 
 /// Triangles without area that hang free at a side, ascending; the others lie between their neighbours and do no harm.
-fn slivers(weld: &Weld, corners: &[[Point3; 3]], flat: f64) -> Vec<u32> {
+fn slivers(welded: &WeldedTriangles, corners: &[[Point3; 3]], flat: f64) -> Vec<u32> {
     let is_flat = |t: u32| {
         let corners = corners[t as usize];
         smallest_height(corners) <= flat && triangle_quality(corners) < THIN
     };
-    let free_sides = weld.edges().filter(|edge| edge.len() == 1).map(|e| e[0]);
+    let free_sides = welded.edges().filter(|edge| edge.len() == 1).map(|e| e[0]);
     let mut slivers: Vec<u32> = free_sides
-        .map(|side| side.triangle)
+        .map(|side| side.face)
         .filter(|&t| is_flat(t))
         .collect();
     slivers.sort_unstable();
@@ -125,38 +125,17 @@ fn is_hidden(bvh: &TriangleBvh, patch: &[u32]) -> bool {
 }
 
 /// Triangles joined by edges that exactly two of them share, lowest first; doubles and degenerate ones left out.
-fn patches(weld: &Weld) -> Vec<Vec<u32>> {
-    let n = weld.triangles.len();
-    let mut parent: Vec<u32> = (0..n as u32).collect();
-    for edge in weld.edges() {
+fn patches(welded: &WeldedTriangles) -> Vec<Vec<u32>> {
+    let mut sets = UnionFind::new(welded.triangles.len());
+    for edge in welded.edges() {
         if let [a, b] = edge {
-            let (a, b) = (root(&mut parent, a.triangle), root(&mut parent, b.triangle));
-            parent[a.max(b) as usize] = a.min(b);
+            sets.union(a.face as usize, b.face as usize);
         }
     }
-    let mut row_of = vec![u32::MAX; n];
-    let mut patches: Vec<Vec<u32>> = Vec::new();
-    for t in 0..n as u32 {
-        let [a, b, c] = weld.triangles[t as usize];
-        if weld.originals[t as usize] != t || a == b || b == c || c == a {
-            continue;
-        }
-        let r = root(&mut parent, t) as usize;
-        if row_of[r] == u32::MAX {
-            row_of[r] = patches.len() as u32;
-            patches.push(Vec::new());
-        }
-        patches[row_of[r] as usize].push(t);
-    }
-    patches
-}
-
-fn root(parent: &mut [u32], mut t: u32) -> u32 {
-    while parent[t as usize] != t {
-        parent[t as usize] = parent[parent[t as usize] as usize];
-        t = parent[t as usize];
-    }
-    t
+    let is_proper =
+        |t: usize| welded.originals[t] as usize == t && !is_degenerate(&welded.triangles[t]);
+    let rows = |set: Vec<usize>| set.into_iter().map(|t| t as u32).collect();
+    sets.sets(is_proper).into_iter().map(rows).collect()
 }
 
 #[cfg(test)]

@@ -157,7 +157,7 @@ mod tests {
         let cloud = SurfelCloud::new(Arc::new(PointCloud::new(points, None).unwrap()));
         let samples = cloud.sample(4000, &mut SeededRng::new(1));
         let dense = samples.iter().filter(|s| s.point.x < 1.0).count();
-        // Half of the area; by point it would be nine tenths. 0.5 ± 6 σ, and rims count a little more.
+        // Half of the area; by point it would be nine tenths. 0.5 ± 6 σ, and boundaries count a little more.
         assert!((1700..2300).contains(&dense), "{dense}");
     }
 }

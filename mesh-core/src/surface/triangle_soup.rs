@@ -2,20 +2,22 @@
 
 use rayon::prelude::*;
 
-use super::boundary::Boundary;
+use super::open_boundary::open_boundary;
 use super::orientation::Orientation;
 use super::stray::Strays;
-use super::weld::Weld;
+use super::welded::WeldedTriangles;
 use super::{Location, NormalSign, SurfacePoint, SurfaceSample, TargetSurface};
 use crate::measure::{triangle_area, triangle_normal};
 use crate::sampling::{SeededRng, TriangleSampler};
+use crate::triangulation::Cut;
 use crate::{
-    Aabb, Point3, PolygonSoup, TopologyError, TriangleBvh, TriangleFans, Triangulation, Vector3,
+    Aabb, Boundary, Point3, PolygonSoup, TopologyError, TriangleBvh, TriangleFans, Vector3,
+    VertexId,
 };
 
 /// A target made of triangles, of which nothing is expected but finite corners.
 ///
-/// Polygons are split as by [`Triangulation`]; a [`Location`] names rows of these triangles. Normals are those of the
+/// Polygons are split as by [`crate::Triangulation`]; a [`Location`] names rows of these triangles. Normals are those of the
 /// triangles, means on edges and corners, turned outwards as far as the shape tells (see
 /// [`TargetSurface::normal_sign`]).
 ///
@@ -52,15 +54,12 @@ impl TriangleSoup {
         let areas = || triangles.iter().map(|t| triangle_area(corners(t)));
         let (area, sampler) = (areas().sum(), TriangleSampler::new(areas()));
 
-        let weld = Weld::new(&positions, &triangles);
+        let welded = WeldedTriangles::new(&positions, &triangles);
         Ok(Self {
-            boundary: Boundary::new(&weld, &bvh),
-            orientation: Orientation::new(&weld, &bvh),
-            vertices: weld
-                .used_vertices()
-                .map(|v| positions[v as usize])
-                .collect(),
-            fans: TriangleFans::new(weld.triangles),
+            boundary: open_boundary(&welded, &bvh),
+            orientation: Orientation::new(&welded, &bvh),
+            vertices: welded.used_points(),
+            fans: TriangleFans::new(welded.points.len(), welded.triangles),
             area,
             sampler,
             bvh,
@@ -196,6 +195,11 @@ fn triangles(soup: PolygonSoup) -> Result<(Vec<Point3>, Vec<[u32; 3]>), Topology
         return Ok((soup.positions, triangles));
     }
     let (mesh, positions) = soup.into_halfedge()?;
-    let triangles = Triangulation::new(&mesh, &positions).rows();
+    let rows = |t: &[VertexId; 3]| t.map(|v| v.index() as u32);
+    let triangles = Cut::new(&mesh, &positions)
+        .triangles
+        .iter()
+        .map(rows)
+        .collect();
     Ok((positions.into_vec(), triangles))
 }

@@ -1,6 +1,7 @@
 //! Properties of meshes, files and target surfaces.
 
 mod closest_point;
+mod denoise;
 mod io_convert;
 mod io_data;
 mod io_gltf;
@@ -15,3 +16,4 @@ mod io_xyz;
 mod point_cloud;
 mod target_variants;
 mod triangle_soup;
+mod triangulation;

@@ -188,3 +188,29 @@ fn clouds_do_not_depend_on_the_threads() {
     };
     assert_eq!(with(1), with(4));
 }
+
+#[test]
+fn points_apart_are_strays_and_sparse_regions_are_not() {
+    let mut points = shapes::icosphere(4).positions;
+    assert!(PointCloud::new(points.clone(), None)
+        .unwrap()
+        .strays()
+        .is_empty());
+
+    let n = points.len() as u32;
+    points.extend([[1.6, 0.0, 0.2], [0.0, 0.1, 0.0], [2.0, 2.0, 2.0]].map(Point3::from));
+    points.extend([[2.1, 2.0, 2.1], [2.0, 1.8, 2.0]].map(Point3::from));
+    let cloud = PointCloud::new(points, None).unwrap();
+    assert_eq!(cloud.strays(), (n..n + 5).collect::<Vec<_>>());
+
+    // A spiral over the sphere, ten times as dense at one pole as at the other.
+    let uneven = (0..4000).map(|k| {
+        let z = 1.0 - 2.0 * (f64::from(k) / 4000.0).powi(2);
+        let (r, turn) = ((1.0 - z * z).max(0.0).sqrt(), 2.4 * f64::from(k));
+        Point3::new(r * turn.cos(), r * turn.sin(), z)
+    });
+    assert!(PointCloud::new(uneven.collect(), None)
+        .unwrap()
+        .strays()
+        .is_empty());
+}

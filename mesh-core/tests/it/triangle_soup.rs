@@ -90,7 +90,7 @@ fn a_flat_shuffled_sheet_has_no_outside() {
 }
 
 #[test]
-fn boundary_is_the_rim() {
+fn boundary_is_where_the_sheet_ends() {
     for soup in [
         shapes::open_grid(4, 3),
         shuffled(&shapes::open_grid(4, 3), 4),

@@ -3,7 +3,7 @@
 use std::fmt;
 
 use mesh_core::surface::is_exposed;
-use mesh_core::{measure, HalfedgeMesh, TriangleBvh, VertexData, VertexId};
+use mesh_core::{measure, TriangleBvh, VertexData, VertexId};
 use neural_drape::Regions;
 
 use super::Treatment;
@@ -155,7 +155,7 @@ pub fn inner_surfaces(source: &Source) -> Vec<InnerSurface> {
     }
     let mut found = Vec::new();
     let mut is_taken = VertexData::new(n, false);
-    let pieces = pieces(mesh);
+    let pieces = triangulation.connected_groups(|v| triangulation.is_used(v));
     for piece in pieces.iter().filter(|_| pieces.len() > 1) {
         let sum = |of: &VertexData<f64>| piece.iter().map(|&v| of[v]).sum::<f64>();
         let (area, inside) = (sum(&own), sum(&hidden));
@@ -174,7 +174,7 @@ pub fn inner_surfaces(source: &Source) -> Vec<InnerSurface> {
         }
     }
     let is_inside = |v: VertexId| !is_taken[v] && own[v] > 0.0 && hidden[v] == own[v];
-    for vertices in triangulation.connected_groups(n, is_inside) {
+    for vertices in triangulation.connected_groups(is_inside) {
         let share = vertices.iter().map(|&v| own[v]).sum::<f64>() / total;
         if share >= LEAST_SHARE {
             found.push(InnerSurface {
@@ -203,17 +203,4 @@ fn hidden_share(target: &Target) -> f64 {
         .map(|(a, _)| a)
         .sum();
     hidden / areas.iter().sum::<f64>().max(f64::MIN_POSITIVE)
-}
-
-/// Vertices with a triangle, piece by piece: each ascending, pieces in order of their first vertex.
-fn pieces(mesh: &HalfedgeMesh) -> Vec<Vec<VertexId>> {
-    let pieces = mesh.pieces();
-    let mut lists = vec![Vec::new(); pieces.n];
-    for v in mesh.vertices() {
-        if !mesh.outgoing(v).is_empty() {
-            lists[pieces.of_vertex[v.index()] as usize].push(v);
-        }
-    }
-    lists.retain(|list| !list.is_empty());
-    lists
 }

@@ -1,14 +1,14 @@
 //! How a source stands in the target's coordinates, found without landmarks or with one or two.
 
-mod scene;
-mod side;
+mod query_surface;
+mod registration;
 
 use mesh_core::{Point3, Positions, TargetSurface, Triangulation, Vector3};
 use nalgebra::Matrix3;
 use rayon::prelude::*;
 
 use crate::affine::PointPair;
-use scene::{Candidate, Scene, N_FINE};
+use registration::{Candidate, Registration, N_FINE};
 
 /// Samples of each surface while all poses are tried.
 const N_COARSE: usize = 250;
@@ -73,11 +73,11 @@ impl Pose {
 /// the files stand is taken. Of surfaces with very many triangles, closest points are those of discs at random places
 /// until the poses that are left are compared.
 pub fn find_pose(input: PoseInput<'_>) -> Option<Pose> {
-    let scene = Scene::new(&input)?;
-    let mut tried: Vec<Candidate> = scene
+    let registration = Registration::new(&input)?;
+    let mut tried: Vec<Candidate> = registration
         .starts()
         .into_par_iter()
-        .map(|start| scene.refined(start, COARSE_STEPS, N_COARSE))
+        .map(|start| registration.refined(start, COARSE_STEPS, N_COARSE))
         .collect();
     tried.sort_by(|a, b| a.cost.total_cmp(&b.cost));
     let mut different: Vec<Candidate> = Vec::new();
@@ -90,8 +90,8 @@ pub fn find_pose(input: PoseInput<'_>) -> Option<Pose> {
     }
     let mut refined: Vec<Candidate> = different
         .into_par_iter()
-        .map(|c| scene.refined(c, FINE_STEPS, N_FINE))
-        .map(|c| scene.judged(scene.stretched(c, FINE_STEPS)))
+        .map(|c| registration.refined(c, FINE_STEPS, N_FINE))
+        .map(|c| registration.judged(registration.stretched(c, FINE_STEPS)))
         .collect();
     refined.sort_by(|a, b| a.cost.total_cmp(&b.cost));
 
@@ -105,7 +105,7 @@ pub fn find_pose(input: PoseInput<'_>) -> Option<Pose> {
         .iter()
         .find(|c| c.angle_to(best) > SAME_TURN && c.cost < NEARLY_AS_GOOD * best.cost + TIE)
         .map(|c| (c.angle_to(best).to_degrees(), c.cost));
-    let (matrix, translation) = scene.with_units(best);
+    let (matrix, translation) = registration.with_units(best);
     Some(Pose {
         matrix,
         translation,

@@ -7,7 +7,7 @@ use crate::shapes::{self as all_shapes, Shape};
 
 fn input<'a>(s: &'a Shape, landmarks: &'a [Landmark]) -> InitInput<'a> {
     InitInput {
-        mesh: &s.mesh,
+        triangulation: &s.triangulation,
         rest: &s.rest,
         landmarks,
         target_frame: UnitFrame::principal(s.rest.as_slice()),

@@ -18,7 +18,7 @@ fn run(
     config: &InitConfig,
 ) -> Result<Initial, InitError> {
     let input = InitInput {
-        mesh: &s.mesh,
+        triangulation: &s.triangulation,
         rest: &s.rest,
         landmarks,
         target_frame: UnitFrame::principal(goal.as_slice()),
@@ -166,7 +166,7 @@ fn what_has_no_landmark_follows_the_space_around_it() {
     let held: Vec<VertexId> = (0..n).step_by(7).map(VertexId::new).collect();
     for config in configs() {
         let initial = run(&s, &landmarks(&held, &goal), &goal, &config).unwrap();
-        assert_eq!(initial.n_carried, s.rest.len() - n);
+        assert_eq!(initial.n_extrapolated, s.rest.len() - n);
         for v in s.mesh.vertices().skip(n) {
             let error = (initial.positions[v] - goal[v]).norm();
             assert!(error < 0.15, "{v}: {error}");

@@ -14,7 +14,7 @@ const ALL: usize = usize::MAX;
 
 fn input<'a>(s: &'a Shape, landmarks: &'a [Landmark]) -> InitInput<'a> {
     InitInput {
-        mesh: &s.mesh,
+        triangulation: &s.triangulation,
         rest: &s.rest,
         landmarks,
         target_frame: frame(s),

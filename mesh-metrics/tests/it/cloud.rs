@@ -1,6 +1,6 @@
 //! Point clouds as targets.
 
-use mesh_core::{shapes, PointCloud};
+use mesh_core::{shapes, PointCloud, Triangulation};
 use mesh_metrics::{evaluate, EvaluationConfig, EvaluationInput, TargetKind};
 
 #[test]
@@ -9,7 +9,7 @@ fn a_cloud_of_the_own_vertices() {
     let cloud = PointCloud::new(soup.positions.clone(), None).unwrap();
     let (mesh, rest) = soup.into_halfedge().unwrap();
     let input = EvaluationInput {
-        mesh: &mesh,
+        triangulation: &Triangulation::new(&mesh, &rest),
         rest: &rest,
         draped: &rest,
         target: &cloud,

@@ -1,6 +1,6 @@
 //! A report as JSON.
 
-use mesh_core::{shapes, TriangleSoup};
+use mesh_core::{shapes, TriangleSoup, Triangulation};
 use mesh_metrics::{evaluate, EvaluationConfig, EvaluationInput};
 
 #[test]
@@ -10,7 +10,7 @@ fn names_faces_by_row_and_leaves_the_heat_maps_out() {
     let (mesh, rest) = inside_out.into_halfedge().unwrap();
     let target = TriangleSoup::new(shapes::prism(5)).unwrap();
     let input = EvaluationInput {
-        mesh: &mesh,
+        triangulation: &Triangulation::new(&mesh, &rest),
         rest: &rest,
         draped: &rest,
         target: &target,

@@ -1,7 +1,8 @@
 //! A shape and its copy, moved or bent by a known amount.
 
 use mesh_core::{
-    shapes, Landmark, Point3, PolygonSoup, Positions, TriangleSoup, Vector3, VertexId,
+    shapes, Landmark, Point3, PolygonSoup, Positions, TriangleSoup, Triangulation, Vector3,
+    VertexId,
 };
 use mesh_metrics::{
     evaluate, EvaluateError, EvaluationConfig, EvaluationInput, Report, TargetKind,
@@ -28,7 +29,7 @@ fn judge(shape: PolygonSoup, target: PolygonSoup, draw: impl Fn(&Point3) -> Poin
     let target = TriangleSoup::new(target).unwrap();
     let draped = rest.map(draw);
     let input = EvaluationInput {
-        mesh: &mesh,
+        triangulation: &Triangulation::new(&mesh, &rest),
         rest: &rest,
         draped: &draped,
         target: &target,
@@ -125,7 +126,7 @@ fn truth_and_landmarks_are_measured_in_the_common_frame() {
     ];
     landmarks[0].name = Some("corner".into());
     let input = EvaluationInput {
-        mesh: &mesh,
+        triangulation: &Triangulation::new(&mesh, &rest),
         rest: &rest,
         draped: &draped,
         target: &target,
@@ -160,7 +161,7 @@ fn what_cannot_be_judged_is_said() {
     let target = TriangleSoup::new(shapes::open_grid(2, 2)).unwrap();
     let judge = |draped: &Positions| {
         let input = EvaluationInput {
-            mesh: &mesh,
+            triangulation: &Triangulation::new(&mesh, &rest),
             rest: &rest,
             draped,
             target: &target,
@@ -193,7 +194,7 @@ fn what_cannot_be_judged_is_said() {
     };
     let (mesh, rest) = flat.into_halfedge().unwrap();
     let input = EvaluationInput {
-        mesh: &mesh,
+        triangulation: &Triangulation::new(&mesh, &rest),
         rest: &rest,
         draped: &rest,
         target: &target,

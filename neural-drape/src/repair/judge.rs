@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use mesh_core::measure::{triangle_normal, triangle_quality};
-use mesh_core::{Positions, Triangulation, TriangulationEdge, Vector3, VertexId};
+use mesh_core::{Positions, Rows, Triangulation, TriangulationEdge, Vector3, VertexId};
 use mesh_loss::FoldBarrier;
 
 use super::Defects;
@@ -115,11 +115,10 @@ impl<'a> Judge<'a> {
 impl Cut {
     fn new(triangulation: Arc<Triangulation>, rest: &Positions) -> Self {
         let normals = normals(&triangulation, rest);
-        let mut edges = triangulation.interior_edges();
-        edges.retain(|e| !is_folded(e, |t| normals[t]));
+        let is_flat = |e: &TriangulationEdge| !is_folded(e, |t| normals[t]);
         Self {
+            edges: triangulation.interior_edges().filter(is_flat).collect(),
             triangulation,
-            edges,
         }
     }
 
@@ -147,43 +146,33 @@ impl Cut {
 /// What lies around each vertex, for all cuts.
 pub(super) struct Surroundings<'a> {
     judge: &'a Judge<'a>,
-    cuts: Vec<[Rows; 2]>,
-}
-
-/// Lists of rows, one after the other.
-struct Rows {
-    starts: Vec<u32>,
-    rows: Vec<u32>,
+    /// For each triangle of each cut the rows of its edges.
+    edges_at: Vec<Rows<u32>>,
 }
 
 impl<'a> Surroundings<'a> {
-    pub(super) fn new(judge: &'a Judge<'a>, n_vertices: usize) -> Self {
+    pub(super) fn new(judge: &'a Judge<'a>) -> Self {
         let of_cut = |cut: &Cut| {
-            let triangles = cut.triangulation.triangles();
-            let corners = (0..).zip(triangles);
-            let corners = corners.flat_map(|(t, corners)| corners.map(|v| (v.index(), t)));
             let sides = (0..).zip(&cut.edges);
             let sides = sides.flat_map(|(e, edge)| edge.triangles.map(|t| (t, e)));
-            [
-                Rows::new(n_vertices, corners.collect()),
-                Rows::new(triangles.len(), sides.collect()),
-            ]
+            Rows::from_pairs(cut.triangulation.len(), sides)
         };
         Self {
-            cuts: judge.cuts.iter().map(of_cut).collect(),
+            edges_at: judge.cuts.iter().map(of_cut).collect(),
             judge,
         }
     }
 
     /// What can break or mend when `free` moves.
     pub(super) fn reach(&self, free: &[VertexId]) -> Reach {
-        let of_cut = |[triangles_at, edges_at]: &[Rows; 2]| {
-            let triangles = in_order(free.iter().flat_map(|v| triangles_at.of(v.index())));
-            let edges = in_order(triangles.iter().flat_map(|&t| edges_at.of(t as usize)));
+        let of_cut = |(cut, edges_at): (&Cut, &Rows<u32>)| {
+            let around = |&v: &VertexId| cut.triangulation.vertex_triangles(v);
+            let triangles = in_order(free.iter().flat_map(around));
+            let edges = in_order(triangles.iter().flat_map(|&t| &edges_at[t as usize]));
             (triangles, edges)
         };
         let mut triangles = None;
-        let folds = self.cuts.iter().map(|cut| {
+        let folds = self.judge.cuts.iter().zip(&self.edges_at).map(|cut| {
             let (of_cut, edges) = of_cut(cut);
             triangles.get_or_insert(of_cut);
             edges
@@ -208,30 +197,6 @@ impl<'a> Surroundings<'a> {
         };
         let cuts = self.judge.cuts.iter().zip(&reach.0.folds);
         cuts.map(of_cut).fold(1.0, f64::min)
-    }
-}
-
-impl Rows {
-    /// The second of each pair in the list of the first, in the order of the pairs.
-    fn new(n: usize, pairs: Vec<(usize, u32)>) -> Self {
-        let mut starts = vec![0u32; n + 1];
-        for &(list, _) in &pairs {
-            starts[list + 1] += 1;
-        }
-        for list in 0..n {
-            starts[list + 1] += starts[list];
-        }
-        let mut next = starts.clone();
-        let mut rows = vec![0; pairs.len()];
-        for (list, row) in pairs {
-            rows[next[list] as usize] = row;
-            next[list] += 1;
-        }
-        Self { starts, rows }
-    }
-
-    fn of(&self, list: usize) -> &[u32] {
-        &self.rows[self.starts[list] as usize..self.starts[list + 1] as usize]
     }
 }
 
@@ -308,7 +273,7 @@ mod tests {
         let ball = (Arc::new(Triangulation::new(&mesh, &rest)), rest);
         for (triangulation, rest) in [ball, kites()] {
             let judge = Judge::new(&triangulation, &rest);
-            let surroundings = Surroundings::new(&judge, rest.len());
+            let surroundings = Surroundings::new(&judge);
             let mut x = rest.clone();
             let mut broken = judge.broken(&x);
             let mut n_broken = 0;

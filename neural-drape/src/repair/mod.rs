@@ -76,15 +76,15 @@ pub fn repair(
     if !vertices.is_empty() {
         let mender = Mender {
             judge: &judge,
-            surroundings: Surroundings::new(&judge, x.len()),
+            surroundings: Surroundings::new(&judge),
             shape: LocalShape::new(triangulation, rest),
             barriers: judge.barriers(UNBENT_COSINE),
-            neighbours: triangulation.neighbours(x.len()),
+            triangulation,
             held,
             size: UnitFrame::principal(x.as_slice()).scale,
         };
         let is_broken = |v: VertexId| vertices.binary_search(&v).is_ok();
-        for patch in triangulation.connected_groups(x.len(), is_broken) {
+        for patch in triangulation.connected_groups(is_broken) {
             if let Some(mended) = mender.mended(&positions, &patch, &broken) {
                 (positions, broken) = mended;
             }
@@ -106,7 +106,7 @@ struct Mender<'a> {
     surroundings: Surroundings<'a>,
     shape: LocalShape,
     barriers: Vec<FoldBarrier>,
-    neighbours: VertexData<Vec<VertexId>>,
+    triangulation: &'a Triangulation,
     held: &'a [VertexId],
     size: f64,
 }
@@ -182,7 +182,7 @@ impl Mender<'_> {
     /// Moves each vertex of `free` once, in their order, to the mean of its neighbours.
     fn flatten(&self, x: &mut Positions, free: &[VertexId]) {
         for &v in free {
-            let around = &self.neighbours[v];
+            let around = self.triangulation.vertex_neighbours(v);
             let sum: Vector3 = around.iter().map(|&w| x[w].coords).sum();
             if !around.is_empty() {
                 x[v] = Point3::from(sum / around.len() as f64);
@@ -194,7 +194,9 @@ impl Mender<'_> {
     fn grown(&self, patch: &[VertexId], rings: usize) -> Vec<VertexId> {
         let mut grown = patch.to_vec();
         for _ in 0..rings {
-            let around = grown.iter().flat_map(|&v| &self.neighbours[v]);
+            let around = grown
+                .iter()
+                .flat_map(|&v| self.triangulation.vertex_neighbours(v));
             let around: Vec<VertexId> = around.copied().collect();
             grown.extend(around);
             grown.sort_unstable();
@@ -264,7 +266,7 @@ mod tests {
     fn neighbours_that_changed_places_are_put_back() {
         let (triangulation, rest) = sphere(48);
         let mut x = rest.clone();
-        for [v, w] in triangulation.edges().into_iter().step_by(4001) {
+        for [v, w] in triangulation.edges().iter().copied().step_by(4001) {
             (x[v], x[w]) = (x[w], x[v]);
         }
         let repair = repair(&triangulation, &rest, &x, &[]);

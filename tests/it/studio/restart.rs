@@ -3,9 +3,9 @@
 use std::fs;
 use std::time::Instant;
 
-use serde_json::json;
+use serde_json::{json, Value};
 
-use super::browser::{browser, Page};
+use super::browser::{browser, wait_for, Page};
 use super::server::Server;
 use super::wire::{download, Wire};
 use crate::support::Workplace;
@@ -86,6 +86,12 @@ fn a_finished_drape_comes_back_as_finished() {
     wire.ask(json!({ "command": "drape" }));
     wire.state(|s| s["run"]["status"] == "finished");
     let exported = download(&server, "result");
+    // The session is written a moment later.
+    wait_for("the session file", || {
+        let text = fs::read_to_string(place.path("session.json")).ok()?;
+        let session: Value = serde_json::from_str(&text).ok()?;
+        (session["run"]["iteration"] == 12).then_some(())
+    });
     server.kill();
 
     let server = Server::start(&place.path(""), &["source.obj", "target.ply"]);

@@ -1,38 +1,26 @@
-//! Polygons as triangles, chosen once on the rest shape.
+//! Polygons cut into triangles.
 
 use spade::{ConstrainedDelaunayTriangulation, Triangulation as _};
 
 use crate::measure::triangle_quality;
-use crate::{FaceId, HalfedgeMesh, Point3, Positions, Vector3, VertexData, VertexId};
+use crate::{HalfedgeMesh, Point3, Positions, Vector3, VertexId};
 
-/// Triangles of a polygon mesh, each with its parent face.
-///
-/// Triangles stay triangles; a quad is split along the diagonal whose worst triangle has the better quality Q_f
-/// (Eq. 4), a concave one along the diagonal inside it; a polygon with more sides is split by a constrained
-/// Delaunay triangulation in its best plane. Degenerate faces give no triangle.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Triangulation {
-    triangles: Vec<[VertexId; 3]>,
-    parents: Vec<FaceId>,
-    /// As simple programs cut, as many a face; none where that is the same.
-    simple: Option<Vec<[VertexId; 3]>>,
+/// The triangles of polygons, without what touches what.
+pub(crate) struct Cut {
+    /// Those of one face together, in face order.
+    pub(crate) triangles: Vec<[VertexId; 3]>,
+    /// As simple programs cut, as many a face.
+    pub(crate) simple: Vec<[VertexId; 3]>,
+    /// The first triangle of each face, and how many there are in all.
+    pub(crate) face_starts: Vec<u32>,
 }
 
-/// An edge shared by exactly two triangles of a [`Triangulation`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct TriangulationEdge {
-    /// Its ends, the lower row first.
-    pub vertices: [VertexId; 2],
-    /// The two triangles, by row, the lower first.
-    pub triangles: [usize; 2],
-}
-
-impl Triangulation {
-    /// Triangulates every face of `mesh` on the shape `rest`.
-    pub fn new(mesh: &HalfedgeMesh, rest: &Positions) -> Self {
+impl Cut {
+    /// Cuts every face of `mesh` on the shape `rest`.
+    pub(crate) fn new(mesh: &HalfedgeMesh, rest: &Positions) -> Self {
         let mut triangles = Vec::with_capacity(mesh.n_faces() * 2);
-        let mut parents = Vec::with_capacity(mesh.n_faces() * 2);
         let mut simple = Vec::with_capacity(mesh.n_faces() * 2);
+        let mut face_starts = vec![0];
         for f in mesh.faces() {
             match *mesh.face_vertices(f) {
                 [] => {}
@@ -51,131 +39,13 @@ impl Triangulation {
                     simple.extend(fan(polygon));
                 }
             }
-            parents.resize(triangles.len(), f);
+            face_starts.push(triangles.len() as u32);
         }
         Self {
-            simple: (simple != triangles).then_some(simple),
             triangles,
-            parents,
+            simple,
+            face_starts,
         }
-    }
-
-    /// The same polygons as simple programs cut them, where that differs: quads along the diagonal whose worst triangle
-    /// has the better quality, even where it lies outside, and larger polygons as fans.
-    ///
-    /// A mesh without folds should not seem folded there.
-    pub fn simply_cut(&self) -> Option<Self> {
-        self.simple.as_ref().map(|triangles| Self {
-            triangles: triangles.clone(),
-            parents: self.parents.clone(),
-            simple: None,
-        })
-    }
-
-    /// All triangles, those of one face together, in face order.
-    pub fn triangles(&self) -> &[[VertexId; 3]] {
-        &self.triangles
-    }
-
-    /// The rows of every triangle's vertices.
-    pub fn rows(&self) -> Vec<[u32; 3]> {
-        let of = |t: &[VertexId; 3]| t.map(|v| v.index() as u32);
-        self.triangles.iter().map(of).collect()
-    }
-
-    /// The face that triangle `t` is part of.
-    pub fn parent(&self, t: usize) -> FaceId {
-        self.parents[t]
-    }
-
-    /// How many triangles there are.
-    pub fn len(&self) -> usize {
-        self.triangles.len()
-    }
-
-    /// Whether there is no triangle.
-    pub fn is_empty(&self) -> bool {
-        self.triangles.is_empty()
-    }
-
-    /// The corner points of every triangle at `x`.
-    pub fn corners<'a>(
-        &'a self,
-        x: &'a Positions,
-    ) -> impl ExactSizeIterator<Item = [Point3; 3]> + 'a {
-        self.triangles.iter().map(|t| t.map(|v| x[v]))
-    }
-
-    /// Every edge once, diagonals of polygons included, the lower vertex first, in order of their vertices.
-    pub fn edges(&self) -> Vec<[VertexId; 2]> {
-        let sides = self
-            .triangles
-            .iter()
-            .flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
-        let mut edges: Vec<_> = sides.map(|[a, b]| [a.min(b), a.max(b)]).collect();
-        edges.sort_unstable();
-        edges.dedup();
-        edges
-    }
-
-    /// Each vertex's neighbours along the edges, ascending, for a mesh of `n_vertices`.
-    pub fn neighbours(&self, n_vertices: usize) -> VertexData<Vec<VertexId>> {
-        let mut neighbours = VertexData::new(n_vertices, Vec::new());
-        for [a, b] in self.edges() {
-            neighbours[a].push(b);
-            neighbours[b].push(a);
-        }
-        neighbours
-    }
-
-    /// The chosen vertices in groups that edges between chosen ones join, each ascending, in order of their first.
-    pub fn connected_groups(
-        &self,
-        n_vertices: usize,
-        is_chosen: impl Fn(VertexId) -> bool,
-    ) -> Vec<Vec<VertexId>> {
-        let neighbours = self.neighbours(n_vertices);
-        let mut is_open = neighbours.ids().map(&is_chosen).collect::<Vec<bool>>();
-        let mut groups = Vec::new();
-        for start in neighbours.ids() {
-            if !std::mem::take(&mut is_open[start.index()]) {
-                continue;
-            }
-            let (mut group, mut next) = (vec![start], 0);
-            while let Some(&v) = group.get(next) {
-                next += 1;
-                let reached = neighbours[v].iter().copied();
-                group.extend(reached.filter(|w| std::mem::take(&mut is_open[w.index()])));
-            }
-            group.sort_unstable();
-            groups.push(group);
-        }
-        groups
-    }
-
-    /// The edges that exactly two triangles share, diagonals of polygons included, in order of their vertices.
-    pub fn interior_edges(&self) -> Vec<TriangulationEdge> {
-        let mut sides: Vec<([VertexId; 2], usize)> = Vec::with_capacity(3 * self.len());
-        for (t, &[a, b, c]) in self.triangles.iter().enumerate() {
-            sides.extend([[a, b], [b, c], [c, a]].map(|[p, q]| ([p.min(q), p.max(q)], t)));
-        }
-        sides.sort_unstable();
-        sides
-            .chunk_by(|a, b| a.0 == b.0)
-            .filter(|group| group.len() == 2)
-            .map(|group| TriangulationEdge {
-                vertices: group[0].0,
-                triangles: [group[0].1, group[1].1],
-            })
-            .collect()
-    }
-
-    /// The vertices that some triangle uses, in order.
-    pub fn used_vertices(&self) -> Vec<VertexId> {
-        let mut used: Vec<VertexId> = self.triangles.iter().flatten().copied().collect();
-        used.sort_unstable();
-        used.dedup();
-        used
     }
 }
 
@@ -302,7 +172,7 @@ fn lowest_first(t: [usize; 3]) -> [usize; 3] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::PolygonSoup;
+    use crate::{PolygonSoup, Triangulation};
 
     fn triangulate(points: &[[f64; 3]]) -> Triangulation {
         let soup = PolygonSoup {
@@ -364,13 +234,6 @@ mod tests {
         let triangles = triangulate(&l_shape);
         assert_eq!(triangles.len(), 4);
         assert!((area(&l_shape) - 3.0).abs() < 1e-3);
-    }
-
-    #[test]
-    fn edges_are_listed_once() {
-        let quad = triangulate(&[[0., 0., 0.], [1., 0., 0.], [1., 1., 0.], [0., 1., 0.]]);
-        assert_eq!(quad.edges().len(), 5);
-        assert_eq!(quad.interior_edges().len(), 1);
     }
 
     #[test]

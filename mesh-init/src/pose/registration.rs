@@ -4,8 +4,9 @@ use mesh_core::sampling::SeededRng;
 use mesh_core::{NormalSign, Positions, TriangleBvh, UnitFrame, Vector3};
 use nalgebra::{Matrix3, SymmetricEigen};
 
-use super::side::{
-    in_discs, sample_source, sample_target, Detail, Place, Side, Surface, LARGE, N_DISCS,
+use super::query_surface::{
+    in_discs, sample_source, sample_target, Detail, ExactSurface, Place, QuerySurface, LARGE,
+    N_DISCS,
 };
 use super::PoseInput;
 use crate::affine::{least_squares, PointPair, WeightedPair};
@@ -66,10 +67,10 @@ struct Hits {
 
 /// Both surfaces and their samples, in boxes of longest side 1. Samples come shuffled, so that the first few are spread
 /// over all of a surface.
-pub(super) struct Scene<'a> {
-    target: Side<'a>,
+pub(super) struct Registration<'a> {
+    target: QuerySurface<'a>,
     frames: [UnitFrame; 2],
-    from: Side<'a>,
+    from: QuerySurface<'a>,
     source: Vec<Place>,
     samples: Vec<Place>,
     landmarks: Vec<[Vector3; 2]>,
@@ -82,7 +83,7 @@ struct Matched {
     cost: f64,
 }
 
-impl<'a> Scene<'a> {
+impl<'a> Registration<'a> {
     pub(super) fn new(input: &PoseInput<'a>) -> Option<Self> {
         let bounds = [
             mesh_core::Aabb::of(input.rest.iter()),
@@ -110,12 +111,12 @@ impl<'a> Scene<'a> {
         ];
         let [of_source, of_target] = discs.map(|places| places.and_then(|p| in_discs(&p)));
         Some(Self {
-            target: Side {
-                surface: Surface::Target(input.target, frames[1]),
+            target: QuerySurface {
+                exact: ExactSurface::Target(input.target, frames[1]),
                 discs: of_target,
             },
-            from: Side {
-                surface: Surface::Source(TriangleBvh::new(
+            from: QuerySurface {
+                exact: ExactSurface::Source(TriangleBvh::new(
                     input.triangulation.corners(&unit).collect(),
                 )),
                 discs: of_source,

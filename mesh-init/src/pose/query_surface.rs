@@ -1,4 +1,4 @@
-//! What is asked for closest points while a pose is searched: a surface, or discs in its stead.
+//! A surface that is asked for closest points while a pose is searched, or discs in its stead.
 
 use std::sync::Arc;
 
@@ -21,12 +21,12 @@ pub(super) struct Place {
 }
 
 /// A surface, and discs at random places of it in its stead where it is large.
-pub(super) struct Side<'a> {
-    pub(super) surface: Surface<'a>,
+pub(super) struct QuerySurface<'a> {
+    pub(super) exact: ExactSurface<'a>,
     pub(super) discs: Option<SurfelCloud>,
 }
 
-pub(super) enum Surface<'a> {
+pub(super) enum ExactSurface<'a> {
     /// In its own coordinates, and how they become those of the box.
     Target(&'a dyn TargetSurface, UnitFrame),
     /// In those of the box.
@@ -42,20 +42,20 @@ pub(super) enum Detail {
     Exact,
 }
 
-impl Side<'_> {
+impl QuerySurface<'_> {
     /// The closest place to a point of the box; the row of the hit becomes the hint for the next query nearby.
     pub(super) fn closest(&self, p: &Vector3, hint: &mut u32, detail: Detail) -> Option<Place> {
         let at = (*p).into();
-        let (hit, point, normal) = match (&self.discs, detail, &self.surface) {
+        let (hit, point, normal) = match (&self.discs, detail, &self.exact) {
             (Some(discs), Detail::Discs, _) => {
                 let hit = discs.closest_point_from(&at, *hint);
                 (hit, hit.point, discs.normal(&hit.location))
             }
-            (_, _, Surface::Target(target, frame)) => {
+            (_, _, ExactSurface::Target(target, frame)) => {
                 let hit = target.closest_point_from(&frame.from_unit(&at), *hint);
                 (hit, frame.to_unit(&hit.point), target.normal(&hit.location))
             }
-            (_, _, Surface::Source(bvh)) => {
+            (_, _, ExactSurface::Source(bvh)) => {
                 let hit = bvh.closest_point_from(&at, *hint)?;
                 let corners = bvh.triangle(hit.location.row());
                 (hit, hit.point, mesh_core::measure::triangle_normal(corners))
