@@ -15,11 +15,13 @@ use crate::finite_differences::UNIT;
 
 /// Weights of the pairs between a plane and the same plane turned by `degrees`.
 fn weights(degrees: f64, normal_bias: Option<f64>) -> Vec<f64> {
-    let (mesh, rest) = shapes::open_grid(4, 4).into_halfedge().unwrap();
+    let (mesh, rest) = shapes::open_grid(4, 4)
+        .into_halfedge()
+        .expect("a grid is a mesh");
     let triangulation = Arc::new(Triangulation::new(&mesh, &rest));
     let turn = nalgebra::Rotation3::from_axis_angle(&Vector3::x_axis(), degrees.to_radians());
     let target: Arc<dyn TargetSurface> =
-        Arc::new(TriangleSoup::new(shapes::open_grid(4, 4)).unwrap());
+        Arc::new(TriangleSoup::new(shapes::open_grid(4, 4)).expect("a grid is a target"));
     let x = rest.map(|p| turn * p);
     let config = SamplingConfig {
         n_samples: 50,

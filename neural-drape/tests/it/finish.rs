@@ -12,7 +12,12 @@ fn folded() -> (Pair, Positions, VertexId) {
     let v = VertexId::new(1040);
     let is_side = |t: &&[VertexId; 3]| t.contains(&v);
     let triangle = pair.triangulation.triangles().iter().find(is_side);
-    let other = triangle.unwrap().iter().copied().find(|&w| w != v).unwrap();
+    let other = triangle
+        .expect("a vertex has neighbours")
+        .iter()
+        .copied()
+        .find(|&w| w != v)
+        .expect("a vertex has neighbours");
     x[v] = x[v] + (x[other] - x[v]) * 1.6;
     (pair, x, v)
 }
@@ -27,7 +32,7 @@ fn finished(pair: &Pair, x: &Positions, landmarks: &[Landmark], repair: bool) ->
         repair,
         ..short("standard", 5)
     };
-    let drape = Drape::new(input, config).unwrap();
+    let drape = Drape::new(input, config).expect("sound settings");
     let end = drape.finish();
     assert!(!end.before.is_empty());
     end.positions

@@ -34,7 +34,7 @@ impl Parametrization for Recorder {
         gradient: &VertexData<Vector3>,
         learning_rate: f64,
     ) -> Result<(), DrapeError> {
-        self.log.lock().unwrap().push(Descended {
+        self.log.lock().expect("nobody panicked").push(Descended {
             gradient: gradient.as_slice().to_vec(),
             rate: learning_rate,
         });
@@ -70,12 +70,13 @@ fn recorded(pair: &Pair, config: DrapeConfig, shift: Vector3) -> (Vec<Descended>
             log: Arc::clone(&log),
         }) as Box<dyn Parametrization>)
     };
-    let mut drape = Drape::with_parametrization(pair.input(), config, recorder).unwrap();
+    let mut drape =
+        Drape::with_parametrization(pair.input(), config, recorder).expect("sound settings");
     let mut reports = Vec::new();
-    while let Some(report) = drape.step().unwrap() {
+    while let Some(report) = drape.step().expect("a step") {
         reports.push(report);
     }
-    let log = log.lock().unwrap().clone();
+    let log = log.lock().expect("nobody panicked").clone();
     (log, reports)
 }
 

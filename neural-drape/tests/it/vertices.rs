@@ -15,7 +15,9 @@ fn plain() -> VerticesConfig {
 }
 
 fn sphere() -> (Triangulation, Positions) {
-    let (mesh, x) = shapes::quad_sphere(4).into_halfedge().unwrap();
+    let (mesh, x) = shapes::quad_sphere(4)
+        .into_halfedge()
+        .expect("a shape is a mesh");
     (Triangulation::new(&mesh, &x), x)
 }
 
