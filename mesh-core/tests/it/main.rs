@@ -3,12 +3,17 @@
 mod closest_point;
 mod io_convert;
 mod io_data;
+mod io_dialects;
+mod io_findings;
 mod io_gltf;
+mod io_gltf_dialects;
+mod io_limits;
 mod io_morphs;
 mod io_mutations;
 mod io_obj;
 mod io_off;
 mod io_ply;
+mod io_skins;
 mod io_stl;
 mod io_support;
 mod io_xyz;
