@@ -7,7 +7,7 @@ use mesh_core::io::MeshFile;
 use mesh_core::{measure, Aabb, HalfedgeMesh, Triangulation};
 use serde::Serialize;
 
-use crate::seams::Seams;
+use mesh_draping::Seams;
 
 /// What [`Inspection::of`] finds.
 #[derive(Debug, Serialize)]

@@ -8,33 +8,17 @@
     reason = "the command line speaks to its user"
 )]
 
+mod args;
 mod commands;
 mod demo;
-mod draping;
-mod explain;
-mod gallery;
-mod initial;
-mod input;
 mod inspection;
-mod landmarks;
 mod output;
 mod profile;
 mod progress;
-mod reading;
-mod regions;
-mod render;
-mod report;
 mod requirement;
-mod run;
-mod seams;
-mod settings;
-mod similarity;
-mod stand_in;
 mod suite;
-mod toolbox;
 mod usage;
-
-pub use reading::{read_landmarks, read_settings};
+mod words;
 
 use std::ffi::OsString;
 use std::process::ExitCode;

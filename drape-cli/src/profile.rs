@@ -3,117 +3,11 @@
 use std::fmt::Write as _;
 use std::time::{Duration, Instant};
 
-use mesh_core::{Profile, Span};
+use mesh_core::Span;
+use mesh_draping::{Stages, DRAPING};
 use serde_json::{json, Value};
 
 use crate::usage::Usage;
-
-/// Seconds of each stage on the clock and of all processors, and of the parts of the iterations.
-pub(crate) struct Stages {
-    wall: Profile,
-    cpu: Profile,
-    /// Within the drape; stands still unless asked for.
-    pub(crate) parts: Profile,
-}
-
-impl Stages {
-    /// With the parts of the iterations, if they are asked for.
-    pub(crate) fn new(args: &ProfileArgs) -> Self {
-        Self {
-            wall: Profile::on(wall_time),
-            cpu: Profile::on(processor_time),
-            parts: if args.profile {
-                Profile::on(processor_time)
-            } else {
-                Profile::off()
-            },
-        }
-    }
-
-    /// Does the work of a stage.
-    pub(crate) fn time<R>(&mut self, name: &'static str, work: impl FnOnce() -> R) -> R {
-        self.wall.time(name, || self.cpu.time(name, work))
-    }
-
-    /// Does the work of a stage whose parts are told.
-    pub(crate) fn time_with_parts<R>(
-        &mut self,
-        name: &'static str,
-        work: impl FnOnce(&mut Profile) -> R,
-    ) -> R {
-        let mut parts = self.parts.fresh();
-        let done = self.time(name, || work(&mut parts));
-        self.parts.extend(&parts);
-        done
-    }
-
-    /// Seconds on the clock by stage.
-    pub(crate) fn seconds(&self) -> Vec<(&'static str, f64)> {
-        let spans = self.wall.spans().iter();
-        spans.map(|s| (s.name, s.total.as_secs_f64())).collect()
-    }
-
-    /// The table that `--profile` prints.
-    pub(crate) fn table(&self, usage: &Usage) -> String {
-        let mut table = format!(
-            "{:<28}{:>9}{:>9}\n",
-            "where the time went", "wall s", "CPU s"
-        );
-        for (wall, cpu) in self.wall.spans().iter().zip(self.cpu.spans()) {
-            let [w, c] = [wall, cpu].map(|s| s.total.as_secs_f64());
-            // Writing into a string cannot fail.
-            let _ = writeln!(table, "{:<28}{w:>9.3}{c:>9.3}", wall.name);
-        }
-        let drapes = self
-            .cpu
-            .spans()
-            .iter()
-            .filter(|s| s.name.starts_with(DRAPING));
-        table += &self.parts_table(drapes.map(|s| s.total).sum());
-        let _ = writeln!(table, "all: {usage}");
-        table
-    }
-
-    fn parts_table(&self, whole: Duration) -> String {
-        let whole = whole.as_secs_f64();
-        let mut rows = String::new();
-        let mut row = |name: &str, seconds: f64, n_turns: &str| {
-            let share = 100.0 * seconds / whole.max(f64::MIN_POSITIVE);
-            let _ = writeln!(
-                rows,
-                "  {name:<26}{:>9}{seconds:>9.3}{share:>5.0} %{n_turns}",
-                ""
-            );
-        };
-        let mut rest = whole;
-        for Span {
-            name,
-            total,
-            n_turns,
-        } in sorted(self.parts.spans())
-        {
-            row(name, total.as_secs_f64(), &format!("{n_turns:>7} times"));
-            rest -= total.as_secs_f64();
-        }
-        row("everything else", rest.max(0.0), "");
-        rows
-    }
-
-    /// The same as JSON: CPU-seconds by name.
-    pub(crate) fn json(&self) -> Value {
-        let seconds = |spans: &[Span]| -> Value {
-            let pairs = spans.iter();
-            pairs
-                .map(|s| (s.name.to_owned(), json!(s.total.as_secs_f64())))
-                .collect::<serde_json::Map<_, _>>()
-                .into()
-        };
-        json!({ "cpu_seconds": seconds(self.cpu.spans()), "parts": seconds(self.parts.spans()) })
-    }
-}
-
-/// The stage whose parts are told one by one; the refinement of a dense source is another by this name.
-pub(crate) const DRAPING: &str = "drape";
 
 /// What asks for a profile.
 #[derive(Debug, clap::Args)]
@@ -121,6 +15,79 @@ pub(crate) struct ProfileArgs {
     /// Tell where the time went, stage by stage and term by term
     #[arg(long)]
     pub(crate) profile: bool,
+}
+
+impl ProfileArgs {
+    /// Stopwatches for the stages, and for the parts of the iterations if they are asked for.
+    pub(crate) fn stages(&self) -> Stages {
+        let stages = Stages::on(wall_time, processor_time);
+        if self.profile {
+            stages.with_parts(processor_time)
+        } else {
+            stages
+        }
+    }
+}
+
+/// Seconds on the clock by stage.
+pub(crate) fn seconds(stages: &Stages) -> Vec<(&'static str, f64)> {
+    let spans = stages.wall().spans().iter();
+    spans.map(|s| (s.name, s.total.as_secs_f64())).collect()
+}
+
+/// The table that `--profile` prints.
+pub(crate) fn table(stages: &Stages, usage: &Usage) -> String {
+    let mut table = format!(
+        "{:<28}{:>9}{:>9}\n",
+        "where the time went", "wall s", "CPU s"
+    );
+    let (wall, cpu) = (stages.wall().spans(), stages.cpu().spans());
+    for (wall, cpu) in wall.iter().zip(cpu) {
+        let [w, c] = [wall, cpu].map(|s| s.total.as_secs_f64());
+        // Writing into a string cannot fail.
+        let _ = writeln!(table, "{:<28}{w:>9.3}{c:>9.3}", wall.name);
+    }
+    let drapes = cpu.iter().filter(|s| s.name.starts_with(DRAPING));
+    table += &parts_table(stages.parts().spans(), drapes.map(|s| s.total).sum());
+    let _ = writeln!(table, "all: {usage}");
+    table
+}
+
+fn parts_table(parts: &[Span], whole: Duration) -> String {
+    let whole = whole.as_secs_f64();
+    let mut rows = String::new();
+    let mut row = |name: &str, seconds: f64, n_turns: &str| {
+        let share = 100.0 * seconds / whole.max(f64::MIN_POSITIVE);
+        let _ = writeln!(
+            rows,
+            "  {name:<26}{:>9}{seconds:>9.3}{share:>5.0} %{n_turns}",
+            ""
+        );
+    };
+    let mut rest = whole;
+    for Span {
+        name,
+        total,
+        n_turns,
+    } in sorted(parts)
+    {
+        row(name, total.as_secs_f64(), &format!("{n_turns:>7} times"));
+        rest -= total.as_secs_f64();
+    }
+    row("everything else", rest.max(0.0), "");
+    rows
+}
+
+/// The same as JSON: CPU-seconds by name.
+pub(crate) fn json(stages: &Stages) -> Value {
+    let seconds = |spans: &[Span]| -> Value {
+        let pairs = spans.iter();
+        pairs
+            .map(|s| (s.name.to_owned(), json!(s.total.as_secs_f64())))
+            .collect::<serde_json::Map<_, _>>()
+            .into()
+    };
+    json!({ "cpu_seconds": seconds(stages.cpu().spans()), "parts": seconds(stages.parts().spans()) })
 }
 
 /// Longest first.
@@ -161,27 +128,22 @@ mod tests {
     }
 
     #[test]
-    fn work_takes_processor_time_and_parts_are_told() {
-        let mut stages = Stages::new(&ProfileArgs { profile: true });
-        let mut parts = std::mem::take(&mut stages.parts);
-        stages.time(DRAPING, || parts.time("spinning", spin));
-        stages.parts = parts;
+    fn work_takes_processor_time_and_is_told() {
+        let mut stages = ProfileArgs { profile: true }.stages();
+        stages.time(DRAPING, spin);
         let usage = crate::usage::Stopwatch::start().read();
-        let table = stages.table(&usage);
-        let part = table.lines().find(|line| line.contains("spinning"));
-        assert!(
-            part.is_some_and(|line| line.ends_with("1 times")),
-            "{table}"
-        );
-        let seconds = &stages.json()["cpu_seconds"][DRAPING];
+        let told = table(&stages, &usage);
+        assert!(told.lines().any(|line| line.starts_with(DRAPING)), "{told}");
+        assert!(told.contains("everything else"), "{told}");
+        let seconds = &json(&stages)["cpu_seconds"][DRAPING];
         assert!(seconds.as_f64().is_some_and(|s| s > 0.0), "{seconds}");
     }
 
     #[test]
     fn without_the_option_there_are_stages_alone() {
-        let mut stages = Stages::new(&ProfileArgs { profile: false });
+        let mut stages = ProfileArgs { profile: false }.stages();
         stages.time(DRAPING, || ());
-        assert_eq!(stages.seconds()[0].0, DRAPING);
-        assert!(stages.parts.spans().is_empty());
+        assert_eq!(seconds(&stages)[0].0, DRAPING);
+        assert!(stages.parts().spans().is_empty());
     }
 }

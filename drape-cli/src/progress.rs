@@ -1,4 +1,4 @@
-//! Progress on stderr: a bar on a terminal, a line every tenth elsewhere. Keeps the loss curves.
+//! Progress on stderr: a bar on a terminal, a line every tenth elsewhere.
 
 use std::io::IsTerminal as _;
 use std::time::{Duration, Instant};
@@ -9,54 +9,16 @@ use neural_drape::StepReport;
 /// How many plain lines a run prints.
 const N_LINES: usize = 10;
 
-/// Shows and records the steps of one run.
+/// Shows the steps of one run.
 pub(crate) struct Progress {
     shown: Shown,
     start: Instant,
-    history: History,
     n_iterations: usize,
-    /// Iterations of earlier runs, and how many there were so far.
-    n_before: usize,
-    n_shown: usize,
 }
 
 enum Shown {
     Bar(ProgressBar),
     Lines,
-}
-
-/// The value of every term in every iteration.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct History {
-    pub(crate) curves: Vec<Curve>,
-}
-
-/// One term over the run.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Curve {
-    pub(crate) name: &'static str,
-    /// Iteration and value, unweighted.
-    pub(crate) points: Vec<(usize, f64)>,
-}
-
-impl History {
-    fn record(&mut self, step: &StepReport) {
-        for term in &step.terms {
-            let curve = match self.curves.iter().position(|c| c.name == term.name) {
-                Some(known) => &mut self.curves[known],
-                None => {
-                    let points = Vec::with_capacity(step.n_iterations);
-                    self.curves.push(Curve {
-                        name: term.name,
-                        points,
-                    });
-                    let last = self.curves.len() - 1;
-                    &mut self.curves[last]
-                }
-            };
-            curve.points.push((step.iteration, term.value));
-        }
-    }
 }
 
 impl Progress {
@@ -74,28 +36,17 @@ impl Progress {
         Self {
             shown,
             start: Instant::now(),
-            history: History::default(),
             n_iterations,
-            n_before: 0,
-            n_shown: 0,
         }
-    }
-
-    /// What comes is another run, shown as the continuation.
-    pub(crate) fn go_on(&mut self) {
-        self.n_before = self.n_shown;
     }
 
     pub(crate) fn show(&mut self, step: &StepReport) {
         // A drape that goes on after its end has more iterations than it had.
-        self.n_iterations = self.n_iterations.max(self.n_before + step.n_iterations);
+        self.n_iterations = self.n_iterations.max(step.n_iterations);
         let step = &StepReport {
-            iteration: self.n_before + step.iteration,
             n_iterations: self.n_iterations,
             ..step.clone()
         };
-        self.n_shown = step.iteration + 1;
-        self.history.record(step);
         match &self.shown {
             Shown::Bar(bar) => {
                 bar.set_length(step.n_iterations as u64);
@@ -110,12 +61,11 @@ impl Progress {
         }
     }
 
-    /// Takes the bar away and gives the curves.
-    pub(crate) fn finish(self) -> History {
+    /// Takes the bar away.
+    pub(crate) fn finish(self) {
         if let Shown::Bar(bar) = self.shown {
             bar.finish_and_clear();
         }
-        self.history
     }
 }
 
@@ -178,20 +128,12 @@ mod tests {
     }
 
     #[test]
-    fn curves_grow_with_the_steps() {
-        let mut history = History::default();
-        history.record(&step(0, 2));
-        history.record(&step(1, 2));
-        assert_eq!(history.curves[0].points, [(0, 0.5), (1, 0.5)]);
-    }
-
-    #[test]
     fn a_drape_may_go_on_after_its_end() {
         let mut progress = Progress::start(2);
         for (k, n) in [(0, 2), (1, 2), (2, 4), (3, 4)] {
             progress.show(&step(k, n));
         }
         assert_eq!(progress.n_iterations, 4);
-        assert_eq!(progress.finish().curves[0].points.len(), 4);
+        progress.finish();
     }
 }

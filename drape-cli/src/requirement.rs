@@ -202,7 +202,7 @@ mod tests {
         let (mesh, rest) = mesh_core::shapes::quad_sphere(2).into_halfedge().unwrap();
         let target = mesh_core::TriangleSoup::new(mesh_core::shapes::icosphere(1)).unwrap();
         let landmark = mesh_core::Landmark::new(mesh_core::VertexId::new(0), rest.as_slice()[0]);
-        let input = mesh_metrics::EvaluationInput {
+        let input = mesh_draping::mesh_metrics::EvaluationInput {
             mesh: &mesh,
             rest: &rest,
             draped: &rest,
@@ -210,11 +210,13 @@ mod tests {
             landmarks: &[landmark],
             truth: Some(&rest),
         };
-        let config = mesh_metrics::EvaluationConfig {
+        let config = mesh_draping::mesh_metrics::EvaluationConfig {
             n_samples: 10,
             seed: 0,
         };
-        let figures = mesh_metrics::evaluate(input, &config).unwrap().figures();
+        let figures = mesh_draping::mesh_metrics::evaluate(input, &config)
+            .unwrap()
+            .figures();
         assert!(figures.iter().all(|(name, _)| NAMES.contains(name)));
     }
 }

@@ -40,7 +40,7 @@ class App {
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.dress());
     this.link = new Link({
       told: (message) => this.hear(message),
-      frames: (bytes) => this.stage.receive(bytes),
+      shapes: (bytes) => this.stage.receive(bytes),
       online: (isOnline) => this.setOnline(isOnline),
     });
   }
@@ -66,8 +66,8 @@ class App {
   }
 
   // The shape that the result's view was last sent.
-  get frame() {
-    return this.stage.frame;
+  get shown() {
+    return this.stage.shown;
   }
 
   // --- what the server tells ---
@@ -78,7 +78,7 @@ class App {
   }
 
   fetchCurves() {
-    this.link.ask("curves").then((curves) => this.chart.replace(curves), () => {});
+    this.link.ask("query", { do: "curves" }).then((curves) => this.chart.replace(curves), () => {});
   }
 
   hear(message) {
@@ -95,11 +95,11 @@ class App {
     // A drape that was taken up again has a past.
     if (before?.status === "starting" && state.run.status !== "starting") this.fetchCurves();
     if (state.run.status === "none") this.progress = null;
-    for (const side of ["source", "target"]) this.stage.load(side, state[side]);
+    for (const name of ["source", "target"]) this.stage.load(name, state[name]);
     this.words.nameViews();
     this.panels.show(state);
     this.parts.show(state);
-    this.panels.showProgress(this.progress, state.run);
+    this.panels.showProgress(this.progress, state);
     if (!state.landmarks.some((l) => l.id === this.chosen)) this.chosen = null;
     this.words.advise();
     this.painter.moved();
@@ -108,7 +108,7 @@ class App {
   setProgress(progress) {
     this.progress = progress;
     if (progress.loss !== null) this.chart.add("loss", progress.iteration - 1, progress.loss);
-    if (this.state) this.panels.showProgress(progress, this.state.run);
+    if (this.state) this.panels.showProgress(progress, this.state);
     this.chart.draw();
   }
 
@@ -122,9 +122,25 @@ class App {
 
   // --- what the user does ---
 
-  async ask(what, more) {
+  // Asks without changing anything.
+  query(what, more) {
+    return this.ask("query", { do: what, ...more });
+  }
+
+  // Changes landmarks, parts or settings.
+  edit(what, more) {
+    return this.ask("edit", { do: what, ...more });
+  }
+
+  // Drives the drape; where that throws a result away, only if the user means it.
+  async command(what) {
+    if (this.state?.discards.includes(what) && !(await this.words.mayDiscard(what))) return;
+    await this.ask("command", what);
+  }
+
+  async ask(kind, request) {
     try {
-      return await this.link.ask(what, more);
+      return await this.link.ask(kind, request);
     } catch (error) {
       this.words.complain(error);
       return null;
@@ -133,7 +149,7 @@ class App {
 
   async place(view, ray) {
     if (!this.state) return;
-    const answer = await this.ask("place", { side: view.side, ray });
+    const answer = await this.edit("place", { shape: view.name, ray });
     this.choose(answer ? answer.landmark : null);
   }
 
@@ -144,7 +160,7 @@ class App {
       return;
     }
     this.dragging = { next: null };
-    await this.ask("drag", { landmark, side: view.side, ray, done });
+    await this.edit("drag", { landmark, shape: view.name, ray, done });
     const { next } = this.dragging;
     this.dragging = null;
     if (next) this.drag(...next);
@@ -160,8 +176,8 @@ class App {
   }
 
   // Where a point of a view is on the page: for tests.
-  onPage(side, point) {
-    const view = this.views.of(side);
+  onPage(name, point) {
+    const view = this.views.of(name);
     const at = view.project(point);
     const { left, top } = view.element.getBoundingClientRect();
     return at && { x: left + at.x, y: top + at.y };

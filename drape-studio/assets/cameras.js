@@ -36,7 +36,7 @@ export class Cameras {
   frame(view) {
     if (!view.shape) return;
     const { target } = this.app.views;
-    const { shape } = view.side === "result" && target.shape ? target : view;
+    const { shape } = view.name === "result" && target.shape ? target : view;
     const { clientWidth, clientHeight } = view.element;
     view.camera.fit(shape.bounds.centre, shape.sample(3000), clientWidth / clientHeight);
   }
@@ -75,7 +75,7 @@ export class Cameras {
   toggleUp() {
     const { views, painter } = this.app;
     const next = this.focused.camera.up === "y" ? "z" : "y";
-    const turned = this.focused.side === "source" ? [views.source] : [views.target, views.result];
+    const turned = this.focused.name === "source" ? [views.source] : [views.target, views.result];
     turned.forEach((view) => view.camera.setUp(next));
     painter.invalidate();
   }

@@ -26,7 +26,7 @@ const toggleOverlay = (app) => {
 
 const withChosen = (app, what, more = () => ({})) => {
   const landmark = app.chosenLandmark;
-  if (landmark) app.ask(what, { landmark: landmark.id, ...more(landmark) });
+  if (landmark) app.edit(what, { landmark: landmark.id, ...more(landmark) });
 };
 
 const help = () => $("keys-dialog").showModal();

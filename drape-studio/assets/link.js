@@ -1,9 +1,9 @@
 // The live connection: requests with answers, and whatever the studio tells.
 
 export class Link {
-  // `told` hears every message; `frames` every shape or heat map; `online` whether there is a connection.
-  constructor({ told, frames, online }) {
-    Object.assign(this, { told, frames, online });
+  // `told` hears every message; `shapes` every shape or heat map; `online` whether there is a connection.
+  constructor({ told, shapes, online }) {
+    Object.assign(this, { told, shapes, online });
     this.waiting = new Map();
     this.next = 1;
     this.delay = 250;
@@ -21,7 +21,7 @@ export class Link {
     };
     this.socket.onmessage = ({ data }) => {
       if (typeof data === "string") this.hear(JSON.parse(data));
-      else this.frames(data);
+      else this.shapes(data);
     };
     this.socket.onclose = () => {
       this.online(false);
@@ -40,11 +40,11 @@ export class Link {
     return "error" in message ? waiting.reject(new Error(message.error)) : waiting.resolve(message.value);
   }
 
-  // Asks the studio; what it answers, or why it does not.
-  ask(what, more = {}) {
+  // Asks the studio, by kind: a query, an edit or a command; what it answers, or why it does not.
+  ask(kind, request) {
     if (this.socket.readyState !== WebSocket.OPEN) return Promise.reject(new Error("there is no connection"));
     const id = this.next++;
-    this.socket.send(JSON.stringify({ id, do: what, ...more }));
+    this.socket.send(JSON.stringify({ id, [kind]: request }));
     return new Promise((resolve, reject) => this.waiting.set(id, { resolve, reject }));
   }
 
@@ -54,9 +54,9 @@ export class Link {
 }
 
 // Fetches the buffers of a shape.
-export const fetchShape = async (side, hash) => {
-  const answer = await fetch(`mesh/${side}?${hash}`);
-  if (!answer.ok) throw new Error(`the ${side} cannot be loaded`);
+export const fetchShape = async (name, hash) => {
+  const answer = await fetch(`mesh/${name}?${hash}`);
+  if (!answer.ok) throw new Error(`the ${name} cannot be loaded`);
   const bytes = await answer.arrayBuffer();
   const [nVertices, nTriangles, nEdges, hasNormals] = new Uint32Array(bytes, 0, 4);
   let at = 16;

@@ -87,11 +87,11 @@ export class Painter {
     this.aim(view);
     renderer.clear(colours.back);
     if (!view.shape) return;
-    const isResult = view.side === "result";
+    const isResult = view.name === "result";
     const range = isResult ? (app.stage.heat ? HEATS[app.stage.heat] : null) : [0, 1];
-    renderer.draw(view.shape, { style, colour: colours[view.side], line: colours.line, ink: ink(view), range });
+    renderer.draw(view.shape, { style, colour: colours[view.name], line: colours.line, ink: ink(view), range });
     this.probe(view, landmarks);
-    const ranges = view.side === "source" ? app.parts.pointedRanges : [];
+    const ranges = view.name === "source" ? app.parts.pointedRanges : [];
     if (ranges.length > 0 && view.shape.values) renderer.through(view.shape, ranges, range);
     if (isResult && this.overlay > 0 && app.views.target.shape) {
       renderer.draw(app.views.target.shape, { style: "shaded", colour: colours.target, alpha: this.overlay });

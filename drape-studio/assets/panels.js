@@ -7,6 +7,8 @@ const $ = (id) => document.getElementById(id);
 // Misses above this many hundredths of the longest side stand out.
 const FAR = 2;
 
+const COMMANDS = ["drape", "pause", "resume", "extend", "step", "stop", "reset"];
+const LANDMARKS = /\.(json|txt|pp|csv)$/i;
 export const FORMATS = ".obj,.ply,.off,.stl,.gltf,.glb,.xyz,.gz";
 
 export class Panels {
@@ -17,9 +19,10 @@ export class Panels {
     on("open-source", "click", () => this.chooseFile("source"));
     on("open-target", "click", () => this.chooseFile("target"));
     on("open-landmarks", "click", () => this.chooseFile("landmarks"));
-    for (const what of ["undo", "redo", "clear", "drape", "pause", "resume", "step", "extend", "stop", "reset"]) on(what, "click", () => app.ask(what));
-    on("preset", "change", () => app.ask("preset", { name: $("preset").value }));
-    on("seed", "change", () => app.ask("seed", { seed: Math.max(0, Math.min(4294967295, Math.round(Number($("seed").value) || 0))) }));
+    for (const what of ["undo", "redo", "clear"]) on(what, "click", () => app.edit(what));
+    for (const what of COMMANDS) on(what, "click", () => app.command(what));
+    on("preset", "change", () => app.edit("preset", { name: $("preset").value }));
+    on("seed", "change", () => app.edit("seed", { seed: Math.max(0, Math.min(4294967295, Math.round(Number($("seed").value) || 0))) }));
     for (const id of ["mirror", "mirror-source", "mirror-target"]) on(id, "change", () => this.mirror());
     on("settings", "click", () => this.editSettings());
     on("toml-apply", "click", () => this.applySettings());
@@ -39,7 +42,7 @@ export class Panels {
   }
 
   async open(role, file) {
-    this.app.words.say(`Opening ${file.name}…`);
+    this.app.words.say(`Opening ${file.name} as ${role}…`);
     try {
       await openFile(role, file);
       this.app.words.say("");
@@ -60,17 +63,27 @@ export class Panels {
     document.addEventListener("drop", (event) => {
       event.preventDefault();
       clear();
-      const file = event.dataTransfer?.files[0];
-      if (!file) return;
-      const side = viewOf(event)?.dataset.side;
-      const role = /\.(json|txt|pp|csv)$/i.test(file.name) ? "landmarks" : side === "target" ? "target" : side === "source" ? "source" : this.app.state?.source ? "target" : "source";
-      this.open(role, file);
+      this.openDropped([...(event.dataTransfer?.files ?? [])], viewOf(event)?.dataset.name);
     });
+  }
+
+  // One shape goes where it is dropped, of two the first is the source; landmarks come after the shapes that they mark.
+  async openDropped(files, view) {
+    const shapes = files.filter((file) => !LANDMARKS.test(file.name));
+    const landmarks = files.filter((file) => LANDMARKS.test(file.name));
+    if (shapes.length > 2 || landmarks.length > 1) {
+      this.app.words.complain(new Error("drop a source, a target and one file of landmarks at most"));
+      return;
+    }
+    const free = this.app.state?.source ? "target" : "source";
+    const roles = shapes.length === 2 ? ["source", "target"] : [["source", "target"].includes(view) ? view : free];
+    for (const [k, file] of shapes.entries()) await this.open(roles[k], file);
+    for (const file of landmarks) await this.open("landmarks", file);
   }
 
   mirror() {
     const axes = $("mirror").checked ? [Number($("mirror-source").value), Number($("mirror-target").value)] : null;
-    return this.app.ask("mirror", { axes });
+    return this.app.edit("mirror", { axes });
   }
 
   editSettings() {
@@ -81,7 +94,7 @@ export class Panels {
 
   async applySettings() {
     try {
-      await this.app.link.ask("settings", { toml: $("toml").value });
+      await this.app.link.ask("edit", { do: "settings", toml: $("toml").value });
       $("settings-dialog").close();
     } catch (error) {
       $("toml-error").textContent = error.message;
@@ -90,33 +103,20 @@ export class Panels {
 
   // The state as the studio tells it.
   show(state) {
-    const { run, settings, landmarks } = state;
-    const isReady = Boolean(state.source && state.target);
-    const isBusy = ["running", "starting"].includes(run.status);
-    const hasRun = run.status !== "none";
-    const isOver = ["finished", "failed"].includes(run.status);
-    $("undo").disabled = !state.can_undo;
-    $("redo").disabled = !state.can_redo;
-    $("clear").disabled = landmarks.length === 0;
-    $("open-landmarks").disabled = !isReady;
-    $("drape").hidden = isBusy || (hasRun && !isOver && run.status !== "stopped");
-    $("drape").disabled = !isReady;
-    $("drape").textContent = hasRun ? "Drape again" : "Drape";
-    $("drape").classList.toggle("main", !hasRun || !run.pending);
-    $("pause").hidden = !isBusy;
-    $("resume").hidden = !hasRun || isBusy || run.status === "failed" || (run.status === "finished" && !run.pending);
+    const { can, run, settings, landmarks } = state;
+    for (const what of ["undo", "redo", "clear", "drape"]) $(what).disabled = !can[what];
+    for (const what of COMMANDS) $(what).hidden = !can[what];
+    // Before there is anything to drape, the button says what is to come.
+    $("drape").hidden = !can.drape && (can.pause || can.resume);
+    $("drape").textContent = run.status === "none" ? "Drape" : "Drape again";
+    $("drape").classList.toggle("main", !can.resume);
     $("resume").textContent = !run.pending ? "Resume" : run.pending_parts ? "Resume with the changes" : "Resume with the new landmarks";
-    $("extend").hidden = !["finished", "stopped"].includes(run.status) || run.pending;
     $("extend").textContent = `${run.n_more} more iterations`;
-    $("step").disabled = !isReady || isBusy || (run.status === "finished" && !run.pending) || run.status === "failed";
-    $("step").hidden = isOver && !run.pending;
-    $("stop").disabled = !isBusy && run.status !== "paused";
-    $("stop").hidden = isOver;
-    $("reset").disabled = !hasRun;
+    $("open-landmarks").disabled = !can.open_landmarks;
     for (const what of ["result", "warp", "landmarks", "report"]) {
       const link = $(`export-${what}`);
-      link.setAttribute("aria-disabled", String(!isReady));
-      link.tabIndex = isReady ? 0 : -1;
+      link.setAttribute("aria-disabled", String(!can.export));
+      link.tabIndex = can.export ? 0 : -1;
     }
     if ($("preset").options.length !== state.presets.length) {
       $("preset").replaceChildren(...state.presets.map((name) => new Option(name, name)));
@@ -127,7 +127,7 @@ export class Panels {
     const axes = state.mirror ?? [state.source?.symmetry ?? 0, state.target?.symmetry ?? 0];
     [$("mirror-source").value, $("mirror-target").value] = axes;
     $("n-landmarks").textContent = landmarks.length || "";
-    const notes = [state.notice, state.preview_error, ...(isReady ? state.warnings : [])].filter(Boolean);
+    const notes = [state.notice, state.preview_error, ...state.warnings].filter(Boolean);
     $("warnings").replaceChildren(...notes.map((text) => {
       const item = document.createElement("li");
       item.textContent = sentence(text);
@@ -180,10 +180,10 @@ export class Panels {
     row.number.style.background = markColour(id);
     row.number.addEventListener("click", () => this.app.choose(id));
     row.name.addEventListener("focus", () => this.app.choose(id));
-    row.name.addEventListener("change", () => this.app.ask("rename", { landmark: id, name: row.name.value }));
+    row.name.addEventListener("change", () => this.app.edit("rename", { landmark: id, name: row.name.value }));
     row.name.addEventListener("keydown", (event) => event.key === "Enter" && row.name.blur());
-    row.kind.addEventListener("click", () => this.app.ask("kind", { landmark: id, kind: row.kind.dataset.kind === "soft" ? "rigid" : "soft" }));
-    row.remove.addEventListener("click", () => this.app.ask("delete", { landmark: id }));
+    row.kind.addEventListener("click", () => this.app.edit("kind", { landmark: id, kind: row.kind.dataset.kind === "soft" ? "rigid" : "soft" }));
+    row.remove.addEventListener("click", () => this.app.edit("delete", { landmark: id }));
     row.item.append(row.number, row.name, row.miss, row.kind, row.remove);
     this.rows.set(id, row);
     return row;
@@ -203,14 +203,14 @@ export class Panels {
     this.rows.get(id)?.name.select();
   }
 
-  showProgress(progress, run) {
+  showProgress(progress, { run, can }) {
     const { iteration = 0, n_iterations: n = 0, seconds_left: left = 0 } = progress ?? {};
     $("progress").value = n > 0 ? iteration / n : 0;
     const words = { none: "No drape yet", starting: "Deforming the source…", running: "Draping", paused: "Paused", stopped: "Stopped", finished: "Done", failed: "Failed" };
     const parts = [words[run.status]];
     if (run.status !== "none" && n > 0) parts.push(`iteration ${iteration} of ${n}`);
-    if (run.status === "running" && left > 0) parts.push(`${time(left)} left`);
-    if (run.pending && run.status !== "running") parts.push(run.pending_landmarks ? "landmarks changed" : "parts changed");
+    if (can.pause && left > 0) parts.push(`${time(left)} left`);
+    if (run.pending && can.resume) parts.push(run.pending_landmarks ? "landmarks changed" : "parts changed");
     $("status").textContent = $("status").title = run.error ? sentence(run.error) : parts.join(" · ");
     $("status").classList.toggle("is-bad", Boolean(run.error));
   }

@@ -10,7 +10,7 @@ export class Parts {
     this.rows = new Map();
     this.ways = {};
     this.pointedOut = null;
-    this.faces = { hash: null, of: new Map() };
+    this.triangles = { hash: null, of: new Map() };
   }
 
   // The parts as the studio tells them.
@@ -69,14 +69,14 @@ export class Parts {
   }
 
   async treat(name, treatment) {
-    await this.app.ask("part", { name, treatment });
+    await this.app.edit("part", { name, treatment });
     // Where it was refused, what holds is shown again.
     this.show(this.app.state);
   }
 
   // The triangles of the part that is pointed out, which is seen through others.
   get pointedRanges() {
-    return this.faces.of.get(this.pointedOut) ?? [];
+    return this.triangles.of.get(this.pointedOut) ?? [];
   }
 
   pointOut(name) {
@@ -90,16 +90,16 @@ export class Parts {
     if (!views.source.shape) return;
     const shown = Object.entries(this.ways).filter(([name, way]) => way !== "draped" || name === this.pointedOut);
     const hash = stage.hashes.source;
-    if (this.faces.hash !== hash) this.faces = { hash, of: new Map() };
+    if (this.triangles.hash !== hash) this.triangles = { hash, of: new Map() };
     for (const [name] of shown) {
-      if (!this.faces.of.has(name)) this.faces.of.set(name, (await this.app.ask("part_faces", { name })) ?? []);
+      if (!this.triangles.of.has(name)) this.triangles.of.set(name, (await this.app.query("part_triangles", { name })) ?? []);
     }
     const { shape } = views.source;
     if (stage.hashes.source !== hash || !shape) return;
     const values = new Float32Array(shape.triangles.length / 3).fill(-1);
     for (const [name, way] of shown) {
       const value = name === this.pointedOut ? 1 : way === "free" ? 0.25 : 0.75;
-      for (const [from, to] of this.faces.of.get(name) ?? []) values.fill(value, from, to);
+      for (const [from, to] of this.triangles.of.get(name) ?? []) values.fill(value, from, to);
     }
     shape.colour(shown.length > 0 ? values : null, true);
     painter.invalidate(views.source);

@@ -14,7 +14,7 @@ const SOON = 120;
 export class Stage {
   constructor(app) {
     this.app = app;
-    this.frame = null;
+    this.shown = null;
     this.heat = "";
     this.isHeatAsked = false;
     this.heatSerial = null;
@@ -22,27 +22,27 @@ export class Stage {
   }
 
   // Loads a shape if it is another than the one shown.
-  async load(side, about) {
+  async load(name, about) {
     const { app } = this;
     const hash = about ? about.hash : null;
-    if (this.hashes[side] === hash) return;
-    this.hashes[side] = hash;
-    [side, "result"].forEach((name) => this.drop(app.views.of(name)));
+    if (this.hashes[name] === hash) return;
+    this.hashes[name] = hash;
+    [name, "result"].forEach((dropped) => this.drop(app.views.of(dropped)));
     app.setFigures(null);
     if (!hash) return;
     try {
-      const buffers = await fetchShape(side, hash);
-      if (this.hashes[side] !== hash) return;
-      const view = app.views.of(side);
+      const buffers = await fetchShape(name, hash);
+      if (this.hashes[name] !== hash) return;
+      const view = app.views.of(name);
       view.shape = new Shape(app.painter.renderer.gl, buffers);
       view.camera.home();
       app.cameras.frame(view);
-      if (side === "source") app.parts.colour();
-      this.takeFrame();
+      if (name === "source") app.parts.colour();
+      this.takeShown();
       app.words.nameViews();
       app.painter.invalidate();
     } catch (error) {
-      this.hashes[side] = undefined;
+      this.hashes[name] = undefined;
       app.words.complain(error);
     }
   }
@@ -60,8 +60,8 @@ export class Stage {
     const [what, serial, kind, more] = new Uint32Array(bytes, 0, 4);
     const numbers = new Float32Array(bytes, 16);
     if (what === 1) {
-      this.frame = { serial, kind, iteration: more, positions: numbers };
-      this.takeFrame();
+      this.shown = { serial, kind, iteration: more, positions: numbers };
+      this.takeShown();
       this.acknowledge(serial);
     } else if (views.result.shape && this.heat) {
       this.isHeatAsked = false;
@@ -85,16 +85,16 @@ export class Stage {
   }
 
   // Puts the newest positions into the result's view.
-  takeFrame() {
-    const { app, frame } = this;
+  takeShown() {
+    const { app, shown } = this;
     const { source, target, result } = app.views;
-    if (!frame || !source.shape || !target.shape) return;
-    if (frame.positions.length !== source.shape.positions.length) return;
+    if (!shown || !source.shape || !target.shape) return;
+    if (shown.positions.length !== source.shape.positions.length) return;
     if (result.shape) {
-      result.shape.move(frame.positions);
+      result.shape.move(shown.positions);
     } else {
       const { triangles, edges } = source.shape;
-      result.shape = new Shape(app.painter.renderer.gl, { positions: frame.positions, triangles, edges, normals: null });
+      result.shape = new Shape(app.painter.renderer.gl, { positions: shown.positions, triangles, edges, normals: null });
       result.camera.look(target.camera.yaw, target.camera.pitch);
       app.cameras.frame(result);
       const isMarked = app.state.landmarks.filter((l) => l.source && l.target).length >= ENOUGH_TO_ALIGN;
@@ -104,7 +104,7 @@ export class Stage {
   }
 
   askHeat() {
-    if (!this.heat || this.isHeatAsked || this.heatSerial === this.frame?.serial) return;
+    if (!this.heat || this.isHeatAsked || this.heatSerial === this.shown?.serial) return;
     this.isHeatAsked = true;
     this.app.link.tell({ heat: this.heat });
   }

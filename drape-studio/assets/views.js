@@ -10,9 +10,9 @@ const CLICK = 5;
 export const markColour = (id) => `hsl(${(id * 137.508) % 360} 62% 40%)`;
 
 class View {
-  constructor(app, side) {
-    Object.assign(this, { app, side, camera: new Camera(), shape: null, isStale: true, isUnprobed: false });
-    this.element = document.getElementById(`view-${side}`);
+  constructor(app, name) {
+    Object.assign(this, { app, name, camera: new Camera(), shape: null, isStale: true, isUnprobed: false });
+    this.element = document.getElementById(`view-${name}`);
     this.element.innerHTML = '<div class="name"><b></b><span></span></div><div class="badge" hidden></div><div class="empty" hidden></div><div class="markers"></div>';
     [this.title, this.about] = this.element.querySelectorAll(".name b, .name span");
     this.badge = this.element.querySelector(".badge");
@@ -130,7 +130,7 @@ class View {
   // The place of a landmark in this view and the normal there; none where it has none.
   place(landmark) {
     if (!this.shape) return null;
-    if (this.side === "target") return landmark.target;
+    if (this.name === "target") return landmark.target;
     return landmark.source && landmark.source.vertices.every((v) => 3 * v < this.shape.positions.length) ? this.shape.place(landmark.source) : null;
   }
 
@@ -156,7 +156,7 @@ class View {
       marker.style.translate = `${at.x}px ${at.y}px`;
       marker.textContent = k + 1;
       marker.title = `${label}, ${landmark.kind}`;
-      marker.setAttribute("aria-label", `${label} on the ${this.side}`);
+      marker.setAttribute("aria-label", `${label} on the ${this.name}`);
       marker.classList.toggle("is-rigid", landmark.kind === "rigid");
       marker.classList.toggle("is-behind", this.probes.hidden.has(landmark.id) || this.turnedAway.has(landmark.id));
       marker.classList.toggle("is-chosen", landmark.id === chosen);
@@ -184,12 +184,12 @@ class View {
 
 export class Views {
   constructor(app) {
-    this.list = ["source", "target", "result"].map((side) => new View(app, side));
+    this.list = ["source", "target", "result"].map((name) => new View(app, name));
     [this.source, this.target, this.result] = this.list;
   }
 
-  of(side) {
-    return this.list.find((view) => view.side === side);
+  of(name) {
+    return this.list.find((view) => view.name === name);
   }
 }
 

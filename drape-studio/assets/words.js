@@ -4,22 +4,27 @@ import { FORMATS } from "./panels.js";
 
 const $ = (id) => document.getElementById(id);
 const KINDS = ["Preview: the source brought to its landmarks", "", "Preview: how the drape goes on"];
+const BADGES = { running: "live", paused: "paused" };
+const DISCARDS = {
+  drape: "Another drape begins from the landmarks as they are. What this one came to cannot be brought back; export it first to keep it.",
+  reset: "What it came to cannot be brought back; export it first to keep it. Landmarks and settings stay.",
+};
 // How long a complaint stays, in milliseconds.
 const PATIENCE = 9000;
 
 // The next thing to do.
-const advice = ({ source, target, landmarks, run }) => {
+const advice = ({ source, target, landmarks, run, can }) => {
   const half = landmarks.find((l) => !l.source || !l.target);
   if (!source && !target) return "Open or drop a source and a target to begin";
   if (!source) return "Now open or drop the source: the mesh to deform";
   if (!target) return "Now open or drop the target: the shape to drape over";
   if (half) return `Now click the same place on the ${half.source ? "target" : "source"}`;
-  if (run.status === "running") return "Mark or drag landmarks at any time: they take effect at once";
+  if (can.pause) return "Mark or drag landmarks at any time: they take effect at once";
   if (run.pending) return "Resume: the drape goes on with what you changed";
   if (landmarks.length === 0) return "Click a place on the source, then the same place on the target";
-  if (run.status === "finished") return "Add landmarks where the result is off and resume, let it go on, or export";
+  if (can.extend) return "Add landmarks where the result is off and resume, let it go on, or export";
   if (landmarks.length < 5) return "Mark some more pairs of places, or drape";
-  return run.status === "none" ? "Drape, or mark more places" : "";
+  return can.drape ? "Drape, or mark more places" : "";
 };
 
 export class Words {
@@ -51,6 +56,17 @@ export class Words {
     $("hint").textContent = $("hint").title = advice(state);
   }
 
+  // Whether the user means a command that throws a result away.
+  mayDiscard(what) {
+    const dialog = $("discard-dialog");
+    $("discard-text").textContent = DISCARDS[what];
+    dialog.returnValue = "";
+    dialog.showModal();
+    return new Promise((decide) => {
+      dialog.addEventListener("close", () => decide(dialog.returnValue === "discard"), { once: true });
+    });
+  }
+
   nameViews() {
     const { views, state, stage } = this.app;
     const { source, target, result } = views;
@@ -61,12 +77,11 @@ export class Words {
     };
     set(source, "Source", about(state?.source));
     set(target, "Target", about(state?.target));
-    const { frame } = stage;
-    const isShown = Boolean(result.shape && frame);
-    set(result, "Result", isShown ? KINDS[frame.kind] || `After ${frame.iteration} iterations` : "");
-    const status = state?.run.status;
-    result.badge.hidden = !["running", "paused"].includes(status);
-    result.badge.textContent = status === "running" ? "live" : "paused";
+    const { shown } = stage;
+    const isShown = Boolean(result.shape && shown);
+    set(result, "Result", isShown ? KINDS[shown.kind] || `After ${shown.iteration} iterations` : "");
+    const badge = BADGES[state?.run.status] ?? "";
+    [result.badge.textContent, result.badge.hidden] = [badge, !badge];
     this.invite(source, !state?.source, "The mesh you like", "Drop it here: its quads, UVs and groups survive.", "source");
     this.invite(target, !state?.target, "The shape you want", "Drop a mesh, a raw scan or a point cloud here.", "target");
     this.invite(result, !(state?.source && state?.target), "The result", "The source in the target's shape shows here, as soon as both are open.", null);

@@ -15,7 +15,7 @@ use mesh_core::io::write_atomic;
 use neural_drape::DrapeState;
 use serde::{Deserialize, Serialize};
 
-use crate::hub::Curve;
+use crate::broadcast::Curve;
 use crate::session::RunLog;
 
 const MAGIC: &[u8; 8] = b"DRAPERUN";
@@ -23,14 +23,14 @@ const MAGIC: &[u8; 8] = b"DRAPERUN";
 /// A drape in progress.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Checkpoint {
-    pub(crate) story: Story,
+    pub(crate) history: History,
     pub(crate) state: DrapeState,
 }
 
 /// What happened to it so far.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct Story {
+pub(crate) struct History {
     pub(crate) log: RunLog,
     pub(crate) curves: Vec<Curve>,
 }
@@ -42,10 +42,10 @@ pub(crate) fn path_beside(session: &Path) -> PathBuf {
 
 /// Writes a drape, all or nothing.
 pub(crate) fn write(path: &Path, checkpoint: &Checkpoint) -> Result<()> {
-    let story = serde_json::to_vec(&checkpoint.story)?;
+    let history = serde_json::to_vec(&checkpoint.history)?;
     let mut bytes = MAGIC.to_vec();
-    bytes.extend((story.len() as u64).to_le_bytes());
-    bytes.extend(story);
+    bytes.extend((history.len() as u64).to_le_bytes());
+    bytes.extend(history);
     bytes.extend(checkpoint.state.as_bytes());
     Ok(write_atomic(path, &bytes)?)
 }
@@ -62,9 +62,9 @@ fn parse(bytes: &[u8]) -> Result<Checkpoint> {
     let (length, rest) = rest.split_first_chunk::<8>().context("is cut off")?;
     let length = usize::try_from(u64::from_le_bytes(*length)).context("is damaged")?;
     ensure!(length <= rest.len(), "is cut off");
-    let (story, state) = rest.split_at(length);
+    let (history, state) = rest.split_at(length);
     Ok(Checkpoint {
-        story: serde_json::from_slice(story).context("is damaged")?,
+        history: serde_json::from_slice(history).context("is damaged")?,
         state: DrapeState::from_bytes(state.to_vec()),
     })
 }
@@ -79,7 +79,7 @@ mod tests {
         let path = path_beside(&folder.path().join("a.drape.json"));
         let log = RunLog {
             settings: "seed = 1\n".to_owned(),
-            parts: crate::Parts::default(),
+            parts: mesh_draping::Parts::default(),
             landmarks: Vec::new(),
             events: Vec::new(),
             iteration: 7,
@@ -89,7 +89,7 @@ mod tests {
             points: vec![(0, 0.1 + 0.2), (1, 1e-300)],
         }];
         let checkpoint = Checkpoint {
-            story: Story { log, curves },
+            history: History { log, curves },
             state: DrapeState::from_bytes(vec![1, 2, 3]),
         };
         write(&path, &checkpoint).unwrap();

@@ -14,9 +14,9 @@ use mesh_metrics::{
 use serde::Deserialize;
 use serde_json::json;
 
-use crate::hub::{Frame, Hub};
+use crate::broadcast::{Broadcast, ShownShape};
+use crate::displayed::DisplayedPair;
 use crate::latest::Latest;
-use crate::Scene;
 
 /// Samples per surface for live figures; the report takes more.
 const N_SAMPLES: usize = 20_000;
@@ -25,7 +25,7 @@ const REST: u32 = 4;
 
 /// A shape to judge.
 pub(crate) struct FiguresJob {
-    pub(crate) scene: Scene,
+    pub(crate) displayed: DisplayedPair,
     pub(crate) positions: Arc<Positions>,
     pub(crate) landmarks: Vec<Landmark>,
     /// The iteration of the drape; none before it began.
@@ -34,20 +34,24 @@ pub(crate) struct FiguresJob {
     pub(crate) is_resting: bool,
 }
 
-/// Starts the judge, who tells the hub.
-pub(crate) fn judge(hub: Arc<Hub>) -> Latest<FiguresJob> {
+/// Starts the judge, who tells the broadcast.
+pub(crate) fn judge(broadcast: Arc<Broadcast>) -> Latest<FiguresJob> {
     Latest::start(move |job: FiguresJob| {
         let began = Instant::now();
-        tell(&hub, &job);
+        tell(&broadcast, &job);
         if !job.is_resting {
             thread::sleep((began.elapsed() * REST).min(Duration::from_secs(20)));
         }
     })
 }
 
-fn tell(hub: &Hub, job: &FiguresJob) {
-    let (source, target) = (&job.scene.source, job.scene.target.judged());
-    let (triangulation, rest, x) = (&source.triangulation, &source.rest, job.positions.as_ref());
+fn tell(broadcast: &Broadcast, job: &FiguresJob) {
+    let (source, target) = (&job.displayed.shapes.source, job.displayed.target.judged());
+    let (triangulation, rest, x) = (
+        source.triangulation(),
+        source.rest(),
+        job.positions.as_ref(),
+    );
     let config = EvaluationConfig {
         n_samples: N_SAMPLES,
         seed: 0,
@@ -75,9 +79,11 @@ fn tell(hub: &Hub, job: &FiguresJob) {
         "landmark_rms": (squares / job.landmarks.len().max(1) as f64).sqrt(),
     });
     if let Some(iteration) = job.iteration {
-        hub.record("Q", iteration, q);
+        broadcast.record("Q", iteration, q);
     }
-    hub.figures.send_replace(Arc::from(message.to_string()));
+    broadcast
+        .figures
+        .send_replace(Arc::from(message.to_string()));
 }
 
 /// What a heat map shows.
@@ -97,10 +103,10 @@ pub(crate) enum Heat {
 impl Heat {
     /// The message that carries the map of a shape: four u32 (2, serial, kind, 1 where there is a value per triangle),
     /// then f32 values.
-    pub(crate) fn message(self, scene: &Scene, frame: &Frame) -> Vec<u8> {
-        let (values, is_per_triangle) = self.values(scene, &frame.positions);
+    pub(crate) fn message(self, displayed: &DisplayedPair, shown: &ShownShape) -> Vec<u8> {
+        let (values, is_per_triangle) = self.values(displayed, &shown.positions);
         let mut bytes = Vec::with_capacity(16 + 4 * values.len());
-        for n in [2, frame.serial, self as u32, u32::from(is_per_triangle)] {
+        for n in [2, shown.serial, self as u32, u32::from(is_per_triangle)] {
             bytes.extend(n.to_le_bytes());
         }
         for value in values {
@@ -109,13 +115,16 @@ impl Heat {
         bytes
     }
 
-    fn values(self, scene: &Scene, x: &Positions) -> (Vec<f64>, bool) {
-        let source = &scene.source;
-        let (t, rest) = (&source.triangulation, &source.rest);
+    fn values(self, displayed: &DisplayedPair, x: &Positions) -> (Vec<f64>, bool) {
+        let source = &displayed.shapes.source;
+        let (t, rest) = (source.triangulation(), source.rest());
         match self {
-            Self::Distance => (vertex_distances(x, scene.target.judged()).into_vec(), false),
+            Self::Distance => (
+                vertex_distances(x, displayed.target.judged()).into_vec(),
+                false,
+            ),
             Self::Stretch => {
-                let stretch = face_stretch(&source.mesh, t, rest, x);
+                let stretch = face_stretch(source.mesh(), t, rest, x);
                 ((0..t.len()).map(|k| stretch[t.parent(k)]).collect(), true)
             }
             Self::Angle => {
@@ -131,17 +140,18 @@ impl Heat {
                 };
                 (pairs.map(mean).collect(), true)
             }
-            Self::Flipped => (flipped(scene, x), true),
+            Self::Flipped => (flipped(displayed, x), true),
         }
     }
 }
 
 /// 1 for triangles that face against the target, or against their neighbours where it tells no side.
-fn flipped(scene: &Scene, x: &Positions) -> Vec<f64> {
-    let t = &scene.source.triangulation;
+fn flipped(displayed: &DisplayedPair, x: &Positions) -> Vec<f64> {
+    let source = &displayed.shapes.source;
+    let t = source.triangulation();
     let mut values = vec![0.0; t.len()];
-    let opposed = opposed_triangles(t, x, scene.target.judged()).unwrap_or_default();
-    let folded = folded_edges(t, &scene.source.rest, x);
+    let opposed = opposed_triangles(t, x, displayed.target.judged()).unwrap_or_default();
+    let folded = folded_edges(t, source.rest(), x);
     let folded = folded.iter().flat_map(|edge| edge.triangles);
     opposed
         .into_iter()

@@ -5,32 +5,27 @@
 //! | serve the studio | [`Studio::open`], [`Studio::url`], [`Studio::serve`] |
 //! | do a recorded session again | [`replay`] |
 //!
-//! The session is changed in one place, a thread with an inbox (`desk`). Drapes, previews and figures have threads of
-//! their own; pages are shown the newest of each and pass over older ones (`hub`). What is done to a drape is logged
-//! with the iteration (`course`), so that [`replay`] comes to the same bits. The program that starts the studio lends
-//! it its [`Toolbox`]: settings, landmark files, the initial deformation and the report are those of the command line.
+//! What is draped and how is [`mesh_draping`]'s; here is what shows it and keeps it. The session is changed in one place,
+//! a thread with an inbox (`controller`). Drapes, previews and figures have threads of their own; pages are shown the
+//! newest of each and pass over older ones (`broadcast`). What is done to a drape is logged with the iteration
+//! (`logged_run`), so that [`replay`] comes to the same bits.
 
+mod broadcast;
+mod buffers;
 mod checkpoint;
-mod course;
-mod desk;
-mod display;
+mod controller;
+mod displayed;
 mod figures;
-mod hub;
-mod landmark_file;
 mod latest;
+mod logged_run;
 mod pick;
 mod preview;
 mod replay;
 mod runner;
-mod scene;
 mod server;
 mod session;
+mod shapes;
 mod studio;
-mod toolbox;
 
 pub use replay::{replay, Replayed};
-pub use scene::{Scene, Source, Target};
 pub use studio::{Options, Studio};
-pub use toolbox::{
-    Deformed, Finished, InnerPart, Parts, Settings, TargetParts, Toolbox, Treatment,
-};

@@ -1,21 +1,18 @@
 //! The thread that shows what the landmarks as they are would give.
 
 use std::sync::atomic::{AtomicU32, Ordering};
-use std::sync::mpsc::Sender;
 use std::sync::Arc;
 use std::thread;
 use std::time::{Duration, Instant};
 
 use mesh_core::{Landmark, Positions};
+use mesh_draping::{adjusted, initial_deformation, Error, InitialMethod, Note, Source};
 use mesh_init::{InitConfig, InteractiveInit};
 
-use crate::course::adjusted;
-use crate::desk::Inbox;
+use crate::broadcast::{Broadcast, ShownKind};
+use crate::displayed::DisplayedPair;
 use crate::figures::FiguresJob;
-use crate::hub::{FrameKind, Hub};
 use crate::latest::Latest;
-use crate::scene::Source;
-use crate::{Scene, Settings, Toolbox};
 
 /// Sources with more vertices than this are shown by a stand-in at once, then exactly.
 const LARGE: usize = 4000;
@@ -26,7 +23,7 @@ const SETTLED: Duration = Duration::from_millis(500);
 
 /// What is to be shown of the landmarks.
 #[derive(Clone)]
-pub(crate) enum Shown {
+pub(crate) enum PreviewOf {
     /// Nothing: they are examined only.
     Nothing,
     /// The source brought to them.
@@ -39,43 +36,41 @@ pub(crate) enum Shown {
 #[derive(Clone)]
 pub(crate) struct PreviewJob {
     pub(crate) number: u32,
-    pub(crate) scene: Scene,
-    pub(crate) settings: Settings,
+    pub(crate) displayed: DisplayedPair,
+    pub(crate) method: InitialMethod,
     pub(crate) landmarks: Vec<Landmark>,
-    pub(crate) shown: Shown,
+    /// The number of each landmark's marker.
+    pub(crate) numbers: Vec<usize>,
+    pub(crate) shown: PreviewOf,
     /// The number of the newest job: an older one is not shown any more.
     pub(crate) newest: Arc<AtomicU32>,
     pub(crate) figures: Arc<Latest<FiguresJob>>,
 }
 
-/// Starts the thread; it tells the desk what is suspicious about the landmarks.
+/// Starts the thread; of each job, `tell` hears its number and what is suspicious about its landmarks, or why nothing
+/// can be shown.
 pub(crate) fn preview(
-    toolbox: Arc<dyn Toolbox>,
-    hub: Arc<Hub>,
-    desk: Sender<Inbox>,
+    broadcast: Arc<Broadcast>,
+    tell: impl Fn(u32, Result<Vec<String>, String>) + Send + 'static,
 ) -> Latest<PreviewJob> {
     Latest::start(move |job: PreviewJob| {
         if !job.is_settled() {
             return;
         }
-        let outcome = show(&job, toolbox.as_ref(), &hub)
-            .map(|mut notes| {
-                let warnings = toolbox.examine(&job.scene, &job.landmarks);
-                notes.extend(warnings.iter().map(|text| count_from_one(text)));
-                notes
-            })
-            .map_err(|error| format!("{error:#}"));
-        // The desk is gone only when the server ends.
-        drop(desk.send(Inbox::Previewed(job.number, outcome)));
+        let outcome = show(&job, &broadcast).map(|notes| {
+            let notes = notes.iter().map(ToString::to_string);
+            notes.chain(warnings(&job)).collect()
+        });
+        tell(job.number, outcome.map_err(|error| error.to_string()));
     })
 }
 
 /// Starts the thread that shows the shapes of large sources while landmarks are dragged, by a stand-in, before
 /// [`preview`] has the exact ones.
-pub(crate) fn live_preview(hub: Arc<Hub>) -> Latest<PreviewJob> {
+pub(crate) fn live_preview(broadcast: Arc<Broadcast>) -> Latest<PreviewJob> {
     let mut live: Option<Live> = None;
     Latest::start(move |job: PreviewJob| {
-        let Some(config) = job.settings.live.filter(|_| job.is_large()) else {
+        let Some(config) = job.method.config().filter(|_| job.is_large()) else {
             return;
         };
         if !live.as_ref().is_some_and(|l| l.is_for(&job, config)) {
@@ -84,22 +79,22 @@ pub(crate) fn live_preview(hub: Arc<Hub>) -> Latest<PreviewJob> {
         // Whatever is wrong with the landmarks is told by the exact preview.
         let shown = live.as_mut().and_then(|l| l.show(&job));
         if let Some((kind, x)) = shown.filter(|_| job.is_newest()) {
-            hub.show(&job.scene, kind, Arc::new(x));
+            broadcast.show(&job.displayed, kind, Arc::new(x));
         }
     })
 }
 
 /// A source that is ready to be deformed at once.
 struct Live {
-    source: Arc<Source>,
+    source: Source,
     config: InitConfig,
     init: InteractiveInit,
 }
 
 impl Live {
     fn of(job: &PreviewJob, config: InitConfig) -> Option<Self> {
-        let source = Arc::clone(&job.scene.source);
-        let init = InteractiveInit::new(&source.triangulation, &source.rest, STAND_IN, config);
+        let source = job.displayed.shapes.source.clone();
+        let init = InteractiveInit::new(source.triangulation(), source.rest(), STAND_IN, config);
         Some(Self {
             init: init.ok()?,
             source,
@@ -108,20 +103,20 @@ impl Live {
     }
 
     fn is_for(&self, job: &PreviewJob, config: InitConfig) -> bool {
-        Arc::ptr_eq(&self.source, &job.scene.source) && self.config == config
+        self.source.is_same(&job.displayed.shapes.source) && self.config == config
     }
 
-    fn show(&mut self, job: &PreviewJob) -> Option<(FrameKind, Positions)> {
+    fn show(&mut self, job: &PreviewJob) -> Option<(ShownKind, Positions)> {
         match &job.shown {
-            Shown::Nothing => None,
-            Shown::Initial => {
-                let frame = job.scene.target.judged().principal_frame();
+            PreviewOf::Nothing => None,
+            PreviewOf::Initial => {
+                let frame = job.displayed.target.judged().principal_frame();
                 let initial = self.init.solve(&job.landmarks, frame).ok()?;
-                Some((FrameKind::Initial, initial.positions))
+                Some((ShownKind::Initial, initial.positions))
             }
-            Shown::Adjusted(present) => {
+            PreviewOf::Adjusted(present) => {
                 let x = self.init.adjust(&job.landmarks, present).ok()?;
-                Some((FrameKind::Adjusted, x))
+                Some((ShownKind::Adjusted, x))
             }
         }
     }
@@ -133,7 +128,7 @@ impl PreviewJob {
     }
 
     fn is_large(&self) -> bool {
-        self.scene.source.rest.len() > LARGE
+        self.displayed.shapes.source.rest().len() > LARGE
     }
 
     /// Whether no other edit follows soon: what takes long is then begun.
@@ -147,70 +142,43 @@ impl PreviewJob {
 }
 
 /// Shows the shape; what had to be assumed for it.
-fn show(job: &PreviewJob, toolbox: &dyn Toolbox, hub: &Hub) -> anyhow::Result<Vec<String>> {
-    let mut assumed = Vec::new();
+fn show(job: &PreviewJob, broadcast: &Broadcast) -> Result<Vec<Note>, Error> {
+    let pair = job.displayed.shapes.pair(job.landmarks.clone());
+    let mut notes = Vec::new();
     let (kind, x) = match &job.shown {
-        Shown::Nothing => return Ok(assumed),
-        Shown::Adjusted(present) => (
-            FrameKind::Adjusted,
-            adjusted(&job.scene, &job.landmarks, present)?,
-        ),
-        Shown::Initial => {
-            let deformed = toolbox.deform(&job.scene, &job.landmarks, &job.settings)?;
-            assumed = deformed.assumed;
-            (FrameKind::Initial, deformed.positions)
+        PreviewOf::Nothing => return Ok(notes),
+        PreviewOf::Adjusted(present) => (ShownKind::Adjusted, adjusted(&pair, present)?),
+        PreviewOf::Initial => {
+            let initial = initial_deformation(&pair, job.method)?;
+            notes = initial.notes;
+            (ShownKind::Initial, initial.positions)
         }
     };
     if !job.is_newest() {
-        return Ok(assumed);
+        return Ok(notes);
     }
     let x = Arc::new(x);
-    hub.show(&job.scene, kind, Arc::clone(&x));
+    broadcast.show(&job.displayed, kind, Arc::clone(&x));
     job.figures.ask(FiguresJob {
-        scene: job.scene.clone(),
+        displayed: job.displayed.clone(),
         positions: x,
         landmarks: job.landmarks.clone(),
         iteration: None,
         is_resting: true,
     });
-    Ok(assumed)
+    Ok(notes)
 }
 
-/// The command line counts landmarks from 0, as its files do; the page numbers its markers from 1.
-fn count_from_one(text: &str) -> String {
-    let mut parts = text.split("landmark ");
-    let mut counted = parts.next().unwrap_or_default().to_owned();
-    for part in parts {
-        let n_digits = part.bytes().take_while(u8::is_ascii_digit).count();
-        let (digits, rest) = part.split_at(n_digits);
-        counted += "landmark ";
-        match digits.parse::<usize>() {
-            Ok(n) => counted += &(n + 1).to_string(),
-            Err(_) => counted += digits,
+/// What is suspicious about the landmarks and about the target, in the page's words: it numbers landmarks as its
+/// markers.
+fn warnings(job: &PreviewJob) -> Vec<String> {
+    let pair = job.displayed.shapes.pair(job.landmarks.clone());
+    let findings = pair.findings().into_iter().map(|mut finding| {
+        for label in finding.labels_mut() {
+            label.index = job.numbers.get(label.index).copied().unwrap_or(label.index);
         }
-        counted += rest;
-    }
-    counted
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn numbers_of_landmarks_are_those_of_the_markers() {
-        for (from_zero, from_one) in [
-            (
-                "landmark 0 (nose) and landmark 9 are the same",
-                "landmark 1 (nose) and landmark 10 are the same",
-            ),
-            (
-                "1 landmark: few; 3 landmarks",
-                "1 landmark: few; 3 landmarks",
-            ),
-            ("the landmarks fit", "the landmarks fit"),
-        ] {
-            assert_eq!(count_from_one(from_zero), from_one);
-        }
-    }
+        finding.to_string()
+    });
+    let left_out = pair.target.notes().iter().map(ToString::to_string);
+    findings.chain(left_out).collect()
 }

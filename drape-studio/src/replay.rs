@@ -1,25 +1,23 @@
 //! A recorded session, done again.
 
 use std::path::Path;
-use std::sync::Arc;
 
 use anyhow::{Context as _, Result};
-use mesh_core::{Landmark, Positions};
+use mesh_core::Positions;
+use mesh_draping::{Pair, Preset, Source, Target};
 use neural_drape::network::NetworkMap;
 use neural_drape::{StepReport, Warp, WarpInput};
 
-use crate::course::{Course, Start};
-use crate::session::{self, landmarks};
-use crate::{Scene, Settings, Source, Target, Toolbox};
+use crate::logged_run::LoggedRun;
+use crate::session::{self, landmarks, InputRecord};
+use crate::shapes::Shapes;
 
 /// What a session came to.
 pub struct Replayed {
-    /// Source and target.
-    pub scene: Scene,
-    /// The landmarks that held at the end.
-    pub landmarks: Vec<Landmark>,
+    /// Source and target, with the landmarks that held at the end.
+    pub pair: Pair,
     /// The settings of the drape.
-    pub settings: Settings,
+    pub preset: Preset,
     /// Where it started.
     pub initial: Positions,
     /// The result.
@@ -34,10 +32,9 @@ impl Replayed {
     /// # Errors
     /// The map cannot be made of these shapes.
     pub fn warp(&self) -> Result<Warp> {
-        let source = &self.scene.source;
         Ok(Warp::new(WarpInput {
-            triangulation: &source.triangulation,
-            rest: &source.rest,
+            triangulation: self.pair.source.triangulation(),
+            rest: self.pair.source.rest(),
             initial: &self.initial,
             draped: &self.draped,
             network: self.network.clone(),
@@ -50,11 +47,7 @@ impl Replayed {
 /// # Errors
 /// The session or one of its inputs cannot be read, an input changed since, there is no drape in the session, or the
 /// drape cannot be done.
-pub fn replay(
-    path: &Path,
-    toolbox: &dyn Toolbox,
-    mut show: impl FnMut(&StepReport),
-) -> Result<Replayed> {
+pub fn replay(path: &Path, mut show: impl FnMut(&StepReport)) -> Result<Replayed> {
     let session = session::read(path)?;
     let name = || path.display().to_string();
     let log = session
@@ -62,35 +55,28 @@ pub fn replay(
         .as_ref()
         .context("there is no drape in this session")
         .with_context(name)?;
-    let input = |record: &Option<session::InputRecord>| {
+    let input = |record: &Option<InputRecord>| {
         let record = record.clone().context("an input was never opened");
         record.with_context(name)
     };
     let (source, target) = (input(&session.source)?, input(&session.target)?);
     source.check()?;
     target.check()?;
-    let scene = Scene {
-        source: Arc::new(Source::read(&source.path)?),
-        target: Arc::new(Target::read(&target.path, toolbox)?),
-    };
+    let shapes = Shapes::new(Source::read(&source.path)?, Target::read(&target.path)?);
     session
-        .check_places(scene.source.rest.len())
+        .check_places(shapes.source.rest().len())
         .with_context(name)?;
 
-    let start = Start::new(&scene, toolbox, log)?;
-    let course = Course::replayed(&start, log, |step| {
+    let run = LoggedRun::replayed(&shapes, log, |step| {
         show(step);
         Ok(())
     })
     .with_context(name)?;
-    let (draped, network) = (course.positions(), course.network());
-    drop(course);
     Ok(Replayed {
-        landmarks: landmarks(log.last_landmarks()),
-        settings: start.settings.clone(),
-        initial: start.initial.clone(),
-        draped,
-        network,
-        scene,
+        pair: shapes.pair(landmarks(log.last_landmarks())),
+        preset: run.preset().clone(),
+        initial: run.initial().clone(),
+        draped: run.positions(),
+        network: run.network(),
     })
 }

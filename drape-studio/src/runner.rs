@@ -7,16 +7,17 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use anyhow::{ensure, Result};
+use mesh_draping::{Draping, Parts};
 use neural_drape::{DrapeState, StepReport};
 use serde_json::json;
 
-use crate::checkpoint::{self, Checkpoint, Story};
-use crate::course::{more_iterations, Course, Start};
+use crate::broadcast::{Broadcast, Provenance};
+use crate::checkpoint::{self, Checkpoint, History};
+use crate::displayed::DisplayedPair;
 use crate::figures::FiguresJob;
-use crate::hub::{Hub, Made};
 use crate::latest::Latest;
+use crate::logged_run::LoggedRun;
 use crate::session::{landmarks, Mark, RunLog};
-use crate::{Parts, Scene, Toolbox};
 
 /// Shapes are shown at most this often.
 const FRAME_INTERVAL: Duration = Duration::from_millis(33);
@@ -37,8 +38,8 @@ pub(crate) enum Order {
 }
 
 /// What the thread tells.
-pub(crate) enum News {
-    /// It stands still, ready to go.
+pub(crate) enum Update {
+    /// It stands still, ready to go on.
     Paused(RunLog),
     /// It goes.
     Running,
@@ -52,9 +53,8 @@ pub(crate) enum News {
 
 /// What a drape needs.
 pub(crate) struct RunnerParts {
-    pub(crate) scene: Scene,
-    pub(crate) toolbox: Arc<dyn Toolbox>,
-    pub(crate) hub: Arc<Hub>,
+    pub(crate) displayed: DisplayedPair,
+    pub(crate) broadcast: Arc<Broadcast>,
     pub(crate) figures: Arc<Latest<FiguresJob>>,
     /// Where it is kept.
     pub(crate) checkpoint: PathBuf,
@@ -81,13 +81,13 @@ fn lock(is_wanted: &Mutex<bool>) -> MutexGuard<'_, bool> {
 
 impl Runner {
     /// Starts the thread, which begins with a pause; `tell` is called from it.
-    pub(crate) fn start(parts: RunnerParts, tell: impl Fn(News) + Send + 'static) -> Self {
+    pub(crate) fn start(parts: RunnerParts, tell: impl Fn(Update) + Send + 'static) -> Self {
         let (sender, orders) = channel();
         let is_wanted = Arc::new(Mutex::new(true));
         let wanted = Arc::clone(&is_wanted);
         thread::spawn(move || {
             if let Err(error) = run(&parts, &wanted, &orders, &tell) {
-                tell(News::Failed(format!("{error:#}")));
+                tell(Update::Failed(format!("{error:#}")));
             }
         });
         Self {
@@ -106,22 +106,22 @@ fn run(
     parts: &RunnerParts,
     is_wanted: &Mutex<bool>,
     orders: &Receiver<Order>,
-    tell: &dyn Fn(News),
+    tell: &dyn Fn(Update),
 ) -> Result<()> {
-    let start = Start::new(&parts.scene, parts.toolbox.as_ref(), &parts.log)?;
-    let course = match &parts.state {
-        Some(state) => Course::restored(&start, parts.log.clone(), state)?,
-        None => Course::replayed(&start, &parts.log, |step| {
+    let shapes = &parts.displayed.shapes;
+    let drape = match &parts.state {
+        Some(state) => LoggedRun::restored(shapes, parts.log.clone(), state)?,
+        None => LoggedRun::replayed(shapes, &parts.log, |step| {
             ensure!(*lock(is_wanted), "the drape was given up");
-            parts.hub.record_step(step);
+            parts.broadcast.record_step(step);
             Ok(())
         })?,
     };
     let mut run = Run {
-        n_more: more_iterations(&start.settings.config),
+        n_more: Draping::n_more(drape.preset()),
         parts,
         is_wanted,
-        course,
+        drape,
         tell,
         shown: Instant::now(),
         saved: Instant::now(),
@@ -131,16 +131,25 @@ fn run(
     run.tell_progress(None);
     run.show();
     run.save()?;
-    tell(News::Paused(run.course.log().clone()));
+    let log = run.drape.log().clone();
+    let is_over = run.drape.is_over();
+    if is_over {
+        run.judge(true);
+    }
+    tell(if is_over {
+        Update::Finished(log)
+    } else {
+        Update::Paused(log)
+    });
     run.obey(orders)
 }
 
 struct Run<'a> {
     parts: &'a RunnerParts,
     is_wanted: &'a Mutex<bool>,
-    course: Course<'a>,
+    drape: LoggedRun,
     n_more: usize,
-    tell: &'a dyn Fn(News),
+    tell: &'a dyn Fn(Update),
     shown: Instant,
     saved: Instant,
     judged: Instant,
@@ -166,17 +175,17 @@ impl Run<'_> {
                 Some(Order::Go) => {
                     is_running = true;
                     self.pace = Pace::default();
-                    (self.tell)(News::Running);
+                    (self.tell)(Update::Running);
                 }
                 Some(Order::Pause) if is_running => {
                     is_running = false;
-                    self.rest(News::Paused(self.course.log().clone()))?;
+                    self.rest(Update::Paused(self.drape.log().clone()))?;
                 }
                 Some(Order::Pause) => {}
                 Some(Order::Step) => {
                     is_running = false;
                     if self.advance()? {
-                        self.rest(News::Paused(self.course.log().clone()))?;
+                        self.rest(Update::Paused(self.drape.log().clone()))?;
                     }
                 }
                 Some(order) => self.change(order)?,
@@ -187,12 +196,12 @@ impl Run<'_> {
     /// One iteration; false when it was the last.
     fn advance(&mut self) -> Result<bool> {
         let began = Instant::now();
-        let step = self.course.step()?;
+        let step = self.drape.step()?;
         if let Some(step) = &step {
             self.pace.add(began.elapsed());
-            self.parts.hub.record_step(step);
+            self.parts.broadcast.record_step(step);
         }
-        let is_over = self.course.log().iteration >= self.course.n_iterations();
+        let is_over = self.drape.is_over();
         if self.shown.elapsed() >= FRAME_INTERVAL || is_over {
             self.show();
             self.tell_progress(step.as_ref());
@@ -204,7 +213,7 @@ impl Run<'_> {
             self.save()?;
         }
         if is_over {
-            self.rest(News::Finished(self.course.log().clone()))?;
+            self.rest(Update::Finished(self.drape.log().clone()))?;
         }
         Ok(!is_over)
     }
@@ -212,24 +221,24 @@ impl Run<'_> {
     /// Does something to the drape; what holds already is not done again.
     fn change(&mut self, order: Order) -> Result<()> {
         match order {
-            Order::Marks(marks) if marks != self.course.log().last_landmarks() => {
-                self.course.mark(marks)?;
+            Order::Marks(marks) if marks != self.drape.log().last_landmarks() => {
+                self.drape.set_marks(marks)?;
             }
-            Order::Parts(parts) if parts != *self.course.log().last_parts() => {
-                self.course.treat(parts)?;
+            Order::Parts(parts) if parts != *self.drape.log().last_parts() => {
+                self.drape.set_parts(parts)?;
             }
-            Order::Extend => self.course.extend(self.n_more),
+            Order::Extend => self.drape.extend(self.n_more),
             _ => return Ok(()),
         }
         self.save()?;
         self.show();
         self.tell_progress(None);
-        (self.tell)(News::Changed(self.course.log().clone()));
+        (self.tell)(Update::Changed(self.drape.log().clone()));
         Ok(())
     }
 
     /// Stands still: everything is shown, judged and saved.
-    fn rest(&mut self, news: News) -> Result<()> {
+    fn rest(&mut self, news: Update) -> Result<()> {
         self.show();
         self.judge(true);
         self.save()?;
@@ -238,24 +247,24 @@ impl Run<'_> {
     }
 
     fn show(&mut self) {
-        let Self { parts, course, .. } = self;
-        let x = Arc::new(course.positions());
-        let made = Made {
-            log: course.log().clone(),
-            network: course.network(),
+        let Self { parts, drape, .. } = self;
+        let x = Arc::new(drape.positions());
+        let provenance = Provenance {
+            log: drape.log().clone(),
+            network: drape.network(),
         };
         let is_wanted = lock(self.is_wanted);
         if *is_wanted {
-            parts.hub.show_drape(&parts.scene, x, made);
+            parts.broadcast.show_drape(&parts.displayed, x, provenance);
         }
         self.shown = Instant::now();
     }
 
     fn judge(&mut self, is_resting: bool) {
-        let log = self.course.log();
+        let log = self.drape.log();
         self.parts.figures.ask(FiguresJob {
-            scene: self.parts.scene.clone(),
-            positions: Arc::new(self.course.positions()),
+            displayed: self.parts.displayed.clone(),
+            positions: Arc::new(self.drape.positions()),
             landmarks: landmarks(log.last_landmarks()),
             iteration: Some(log.iteration),
             is_resting,
@@ -265,10 +274,10 @@ impl Run<'_> {
 
     fn save(&mut self) -> Result<()> {
         let checkpoint = Checkpoint {
-            state: self.course.state(),
-            story: Story {
-                log: self.course.log().clone(),
-                curves: self.parts.hub.curves(),
+            state: self.drape.state(),
+            history: History {
+                log: self.drape.log().clone(),
+                curves: self.parts.broadcast.curves(),
             },
         };
         let is_wanted = lock(self.is_wanted);
@@ -280,8 +289,8 @@ impl Run<'_> {
     }
 
     fn tell_progress(&self, step: Option<&StepReport>) {
-        let done = self.course.log().iteration;
-        let n = self.course.n_iterations();
+        let done = self.drape.log().iteration;
+        let n = self.drape.n_iterations();
         let terms = step.iter().flat_map(|step| &step.terms);
         let terms: Vec<_> = terms.map(|t| json!([t.name, t.value * t.weight])).collect();
         let message = json!({
@@ -295,7 +304,7 @@ impl Run<'_> {
         let text = Arc::from(message.to_string());
         let is_wanted = lock(self.is_wanted);
         if *is_wanted {
-            self.parts.hub.progress.send_replace(text);
+            self.parts.broadcast.progress.send_replace(text);
         }
     }
 }

@@ -6,12 +6,13 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use anyhow::{anyhow, ensure, Context as _, Result};
+use mesh_draping::{landmarks, Preset};
 
-use crate::desk::{Desk, DeskParts};
-use crate::hub::Hub;
+use crate::broadcast::Broadcast;
+use crate::controller::{Controller, ControllerParts};
+use crate::displayed::{DisplayedSource, DisplayedTarget};
 use crate::server::{serve, App, Guard};
 use crate::session::{self, InputRecord, Mark, Session};
-use crate::{Scene, Source, Target, Toolbox};
 
 /// What to open.
 #[derive(Clone, Debug)]
@@ -22,8 +23,8 @@ pub struct Options {
     pub target: Option<PathBuf>,
     /// Landmarks to begin with; they replace those of the session.
     pub landmarks: Option<PathBuf>,
-    /// Settings to begin with, as TOML; they replace those of the session.
-    pub settings: Option<String>,
+    /// Settings to begin with; they replace those of the session.
+    pub preset: Option<Preset>,
     /// The file that keeps the session, made where it is not there.
     pub session: PathBuf,
     /// Whether a session that is kept there is dropped.
@@ -42,8 +43,8 @@ pub struct Studio {
 
 /// Inputs in memory.
 struct Inputs {
-    source: Option<Arc<Source>>,
-    target: Option<Arc<Target>>,
+    source: Option<Arc<DisplayedSource>>,
+    target: Option<Arc<DisplayedTarget>>,
 }
 
 impl Studio {
@@ -51,15 +52,15 @@ impl Studio {
     ///
     /// # Errors
     /// A file cannot be read or does not belong to the session, or the port is taken.
-    pub fn open(options: &Options, toolbox: Arc<dyn Toolbox>) -> Result<Self> {
-        let (mut session, mut notice) = kept_session(options, toolbox.as_ref())?;
-        let inputs = open_inputs(options, &mut session, &mut notice, toolbox.as_ref())?;
-        if let Some(settings) = &options.settings {
-            let settings = toolbox.settings(settings)?.toml;
+    pub fn open(options: &Options) -> Result<Self> {
+        let (mut session, mut notice) = kept_session(options)?;
+        let inputs = open_inputs(options, &mut session, &mut notice)?;
+        if let Some(preset) = &options.preset {
+            let settings = preset.to_toml();
             session.edit(|d| d.settings = settings);
         }
         if let Some(path) = &options.landmarks {
-            adopt_landmarks(path, &mut session, &inputs, toolbox.as_ref())?;
+            adopt_landmarks(path, &mut session, &inputs)?;
         }
         let folder = options.session.parent().unwrap_or(Path::new(""));
         if !folder.as_os_str().is_empty() {
@@ -72,10 +73,9 @@ impl Studio {
             .with_context(|| format!("port {} cannot be opened", options.port))?;
         let guard = Guard::new(listener.local_addr()?)?;
         let url = format!("http://{}/{}/", listener.local_addr()?, guard.token());
-        let hub = Arc::new(Hub::new());
-        let desk = Desk::start(DeskParts {
-            toolbox: Arc::clone(&toolbox),
-            hub: Arc::clone(&hub),
+        let broadcast = Arc::new(Broadcast::new());
+        let controller = Controller::start(ControllerParts {
+            broadcast: Arc::clone(&broadcast),
             session,
             source: inputs.source,
             target: inputs.target,
@@ -84,7 +84,7 @@ impl Studio {
         })?;
         let uploads = options.session.with_extension("files");
         Ok(Self {
-            app: App::new(desk, hub, toolbox, uploads),
+            app: App::new(controller, broadcast, uploads),
             listener,
             guard,
             url,
@@ -114,13 +114,15 @@ impl Studio {
 }
 
 /// The session in its file, or a new one; what is there and cannot be used is kept under another name.
-fn kept_session(options: &Options, toolbox: &dyn Toolbox) -> Result<(Session, Option<String>)> {
-    let fresh = || Ok::<_, anyhow::Error>(Session::new(toolbox.settings("")?.toml));
+fn kept_session(options: &Options) -> Result<(Session, Option<String>)> {
+    let fresh = || Session::new(Preset::standard().to_toml());
     if options.is_fresh || !options.session.exists() {
-        return Ok((fresh()?, None));
+        return Ok((fresh(), None));
     }
-    let kept = session::read(&options.session)
-        .and_then(|s| toolbox.settings(&s.document.settings).map(|_| s));
+    let kept = session::read(&options.session).and_then(|session| {
+        Preset::from_toml(&session.document.settings)?;
+        Ok(session)
+    });
     match kept {
         Ok(session) => Ok((session, None)),
         Err(error) => {
@@ -131,7 +133,7 @@ fn kept_session(options: &Options, toolbox: &dyn Toolbox) -> Result<(Session, Op
                 "the session was put aside as {}: {error:#}",
                 aside.display()
             );
-            Ok((fresh()?, Some(notice)))
+            Ok((fresh(), Some(notice)))
         }
     }
 }
@@ -141,7 +143,6 @@ fn open_inputs(
     options: &Options,
     session: &mut Session,
     notice: &mut Option<String>,
-    toolbox: &dyn Toolbox,
 ) -> Result<Inputs> {
     let asked = [&options.source, &options.target];
     let mut records = [session.source.clone(), session.target.clone()];
@@ -167,13 +168,11 @@ fn open_inputs(
     let [source_record, target_record] = records;
     let (source, target) = std::thread::scope(|scope| {
         let source = source_record.as_ref().map(|record| {
-            scope.spawn(|| read_or_forget(record, options.source.is_some(), Source::read))
+            scope.spawn(|| read_or_forget(record, options.source.is_some(), DisplayedSource::read))
         });
-        let target = target_record.as_ref().map(|record| {
-            read_or_forget(record, options.target.is_some(), |path| {
-                Target::read(path, toolbox)
-            })
-        });
+        let target = target_record
+            .as_ref()
+            .map(|record| read_or_forget(record, options.target.is_some(), DisplayedTarget::read));
         let source = source.map(|thread| {
             thread
                 .join()
@@ -192,7 +191,7 @@ fn open_inputs(
     );
     let fits = source
         .as_ref()
-        .is_none_or(|s| session.check_places(s.rest.len()).is_ok());
+        .is_none_or(|s| session.check_places(s.source.rest().len()).is_ok());
     if !fits {
         session.forget_places();
     }
@@ -234,18 +233,13 @@ fn read_or_forget<T>(
     }
 }
 
-fn adopt_landmarks(
-    path: &Path,
-    session: &mut Session,
-    inputs: &Inputs,
-    toolbox: &dyn Toolbox,
-) -> Result<()> {
+fn adopt_landmarks(path: &Path, session: &mut Session, inputs: &Inputs) -> Result<()> {
     let (source, target) = inputs
         .source
         .clone()
         .zip(inputs.target.clone())
         .context("landmarks need a source and a target")?;
-    let landmarks = toolbox.read_landmarks(&Scene { source, target }, path)?;
+    let landmarks = landmarks::read(path, &source.source, &target.target)?;
     let marks: Vec<Mark> = landmarks
         .iter()
         .map(|l| Mark::of(session.fresh_id(), l))

@@ -3,9 +3,8 @@
 use std::hint::black_box;
 
 use criterion::{criterion_group, criterion_main, BenchmarkId, Criterion, Throughput};
+use mesh_core::sampling::SeededRng;
 use mesh_core::{shapes, Location, Point3, SurfacePoint, TriangleBvh};
-use rand::{Rng, SeedableRng};
-use rand_chacha::ChaCha8Rng;
 
 const N_QUERIES: usize = 10_000;
 
@@ -22,18 +21,18 @@ fn triangles(n_splits: usize) -> Vec<[Point3; 3]> {
 
 /// Anywhere in the box of the shape.
 fn uniform_queries() -> Vec<Point3> {
-    let mut rng = ChaCha8Rng::seed_from_u64(1);
+    let mut rng = SeededRng::new(1);
     (0..N_QUERIES)
-        .map(|_| Point3::from([(); 3].map(|()| rng.random_range(-1.2..1.2))))
+        .map(|_| Point3::from([(); 3].map(|()| rng.uniform_in(-1.2..1.2))))
         .collect()
 }
 
 /// Close to the surface, neighbours in sequence: the vertices of a mesh that is almost draped.
 fn near_queries(triangles: &[[Point3; 3]]) -> Vec<Point3> {
-    let mut rng = ChaCha8Rng::seed_from_u64(2);
+    let mut rng = SeededRng::new(2);
     let n = triangles.len().min(N_QUERIES);
     (0..N_QUERIES)
-        .map(|k| triangles[k * n / N_QUERIES][0] * rng.random_range(0.98..1.02))
+        .map(|k| triangles[k * n / N_QUERIES][0] * rng.uniform_in(0.98..1.02))
         .collect()
 }
 

@@ -9,11 +9,13 @@
 //! | measure polygons as triangles | [`Triangulation::new`] |
 //! | query a target | [`TriangleSoup::new`], [`PointCloud::new`], [`TargetSurface`] |
 //! | query a moving mesh | [`TriangleBvh`] |
-//! | draw random places | [`sampling::TriangleSampler`] |
+//! | draw random places | [`sampling::TriangleSampler`], [`sampling::SeededRng`] |
 //! | mark pairs of places | [`Landmark`] |
 //! | let a coarse mesh stand in for a dense one | [`Proxy`] |
 //! | see where time goes | [`Profile`] |
 //! | build test solids | [`shapes`] |
+//!
+//! Points, vectors and matrices are those of [`nalgebra`], which is exported again.
 
 mod attribute;
 mod build;
@@ -53,6 +55,8 @@ pub use surface::{
 };
 pub use triangulation::{Triangulation, TriangulationEdge};
 pub use weld::Weld;
+
+pub use nalgebra;
 
 /// A point of space, in the units of its file.
 pub type Point3 = nalgebra::Point3<f64>;

@@ -113,5 +113,5 @@ impl ArapSolver {
 #[derive(Clone, Debug, Default)]
 pub struct ArapScratch {
     x: Vec<Vector3>,
-    solve: FixedSolveScratch,
+    solve: FixedSolveScratch<Vector3>,
 }

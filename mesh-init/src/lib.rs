@@ -12,8 +12,10 @@
 //! | spread rotations and scales smoothly | [`SimilarSolver`] |
 //! | deform as rigidly as possible | [`ArapSolver`] |
 //!
+//! The crates that the signatures name, [`mesh_core`] and [`mesh_operators`], are exported again.
+//!
 //! ```
-//! use mesh_core::{shapes, Landmark, Point3, UnitFrame, VertexId};
+//! use mesh_init::mesh_core::{shapes, Landmark, Point3, UnitFrame, VertexId};
 //! use mesh_init::{initialize, InitConfig, InitInput};
 //! let (mesh, rest) = shapes::quad_sphere(8).into_halfedge()?;
 //! let stretched = rest.map(|p| Point3::new(3.0 * p.x, p.y, p.z));
@@ -49,3 +51,5 @@ pub use initialize::{
 pub use interactive::InteractiveInit;
 pub use pose::{find_pose, Pose, PoseInput};
 pub use similar::{SimilarConfig, SimilarSolver};
+
+pub use {mesh_core, mesh_operators};

@@ -1,16 +1,18 @@
 //! Value and gradient of every term, by the number of vertices, and the pairs that the distance terms look at.
 #![allow(missing_docs, reason = "criterion's macros make items without docs")]
 
+use std::sync::Arc;
+
 use criterion::{criterion_group, criterion_main, BenchmarkId, Criterion, Throughput};
+use mesh_core::sampling::SeededRng;
 use mesh_core::{
-    shapes, Point3, Positions, Profile, TriangleSoup, Triangulation, UnitFrame, Vector3, VertexData,
+    shapes, Point3, Positions, Profile, TargetSurface, TriangleSoup, Triangulation, UnitFrame,
+    Vector3, VertexData,
 };
 use mesh_loss::{
     AreaKl, Chamfer, Conformal, CornerAngle, Drift, Flip, FoldBarrier, LocalShape, Loss,
     NormalAgreement, Overlap, SamplingConfig, SurfaceMatcher, TriangleQuality, WorstDistance,
 };
-use rand::SeedableRng;
-use rand_chacha::ChaCha8Rng;
 
 const SAMPLING: SamplingConfig = SamplingConfig {
     n_samples: 4000,
@@ -24,11 +26,11 @@ const SAMPLING: SamplingConfig = SamplingConfig {
     },
 };
 
-fn sphere(n: usize) -> (Triangulation, Positions) {
+fn sphere(n: usize) -> (Arc<Triangulation>, Positions) {
     let (mesh, rest) = shapes::quad_sphere(n)
         .into_halfedge()
         .expect("a sphere is a mesh");
-    (Triangulation::new(&mesh, &rest), rest)
+    (Arc::new(Triangulation::new(&mesh, &rest)), rest)
 }
 
 fn wavy(x: &Positions) -> Positions {
@@ -40,12 +42,13 @@ fn losses(c: &mut Criterion) {
         let (t, rest) = sphere(n);
         let x = wavy(&rest);
         let target = TriangleSoup::new(shapes::icosphere(5)).expect("a sphere is a target");
+        let target: Arc<dyn TargetSurface> = Arc::new(target);
         let frame = UnitFrame {
             center: Point3::origin(),
             scale: 1.0,
         };
         let mut matcher = SurfaceMatcher::new(&t, &x, &target, frame);
-        let mut rng = ChaCha8Rng::seed_from_u64(0);
+        let mut rng = SeededRng::new(0);
         let mut profile = Profile::off();
         let mut group = c.benchmark_group("resample");
         group.bench_function(BenchmarkId::from_parameter(x.len()), |b| {
@@ -59,17 +62,13 @@ fn losses(c: &mut Criterion) {
             share: 0.003,
             tolerance: 0.006,
         };
-        let skinny = TriangleQuality {
-            triangulation: &t,
-            threshold: 0.2,
-        };
         let terms: [(&str, &dyn Loss); 11] = [
             ("chamfer", &Chamfer(&matches)),
             ("worst_distance", &worst),
             ("normal_agreement", &NormalAgreement(&matches)),
             ("corner_angle", &CornerAngle::new(&t, &rest)),
             ("area_kl", &AreaKl::new(&t, &rest)),
-            ("triangle_quality", &skinny),
+            ("triangle_quality", &TriangleQuality::new(&t, 0.2)),
             ("flip", &Flip::new(&t, &rest)),
             ("fold_barrier", &FoldBarrier::new(&t, &rest, 0.3)),
             ("conformal", &Conformal::new(&t, &rest)),

@@ -1,5 +1,7 @@
 //! Eq. 3, second term: the areas around each vertex keep their proportions.
 
+use std::sync::Arc;
+
 use mesh_core::measure::triangle_areas;
 use mesh_core::{Positions, Triangulation, Vector3, VertexData};
 
@@ -16,17 +18,17 @@ const SMALLEST_AREA: f64 = 1e-9;
 /// Units: none; ≥ 0; 0 where every one-ring keeps its proportions. A triangle without area counts as 1e-9 of the
 /// mean area and has no gradient.
 /// Source: Mesh Draping, Eq. 3. Departures: the faces are the triangles of the fixed triangulation.
-pub struct AreaKl<'a> {
-    triangulation: &'a Triangulation,
+pub struct AreaKl {
+    triangulation: Arc<Triangulation>,
     /// p of each corner of each triangle, around the vertex at that corner.
     shares: Vec<[f64; 3]>,
     /// Σᵢ Σ p log p.
     entropy: f64,
 }
 
-impl<'a> AreaKl<'a> {
+impl AreaKl {
     /// The term that keeps the proportions of `rest`.
-    pub fn new(triangulation: &'a Triangulation, rest: &Positions) -> Self {
+    pub fn new(triangulation: &Arc<Triangulation>, rest: &Positions) -> Self {
         let areas = floored(triangle_areas(triangulation, rest));
         let around = areas_around(triangulation, &areas, rest.len());
         let shares: Vec<[f64; 3]> = triangulation
@@ -37,18 +39,18 @@ impl<'a> AreaKl<'a> {
             .collect();
         let entropy = shares.iter().flatten().map(|p| p * p.ln()).sum();
         Self {
-            triangulation,
+            triangulation: Arc::clone(triangulation),
             shares,
             entropy,
         }
     }
 }
 
-impl Loss for AreaKl<'_> {
+impl Loss for AreaKl {
     fn accumulate(&self, x: &Positions, weight: f64, grad: &mut VertexData<Vector3>) -> f64 {
         let share = 1.0 / x.len().max(1) as f64;
-        let areas = floored(triangle_areas(self.triangulation, x));
-        let around = areas_around(self.triangulation, &areas, x.len());
+        let areas = floored(triangle_areas(&self.triangulation, x));
+        let around = areas_around(&self.triangulation, &areas, x.len());
         let inverse = around.map(|a| 1.0 / a);
         let logarithm = around.map(|a| a.ln());
 

@@ -41,12 +41,3 @@ fn mean_distance(
     }
     sum * share
 }
-
-impl SurfaceMatch {
-    /// Adds `g`, a gradient with respect to the place, to the three corners.
-    pub(crate) fn scatter(&self, g: &Vector3, grad: &mut VertexData<Vector3>) {
-        for (&v, w) in self.triangle.iter().zip(self.barycentric) {
-            grad[v] += g * w;
-        }
-    }
-}

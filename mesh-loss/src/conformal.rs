@@ -1,5 +1,7 @@
 //! Angle distortion as the Dirichlet energy sees it, with a barrier against collapsing faces.
 
+use std::sync::Arc;
+
 use mesh_core::{Point3, Positions, Triangulation, Vector3, VertexData};
 
 use crate::gradient::area_gradient;
@@ -13,8 +15,8 @@ use crate::Loss;
 /// face collapses, up to a collapse of 10⁻⁶ where the gradient stops. Faces degenerate at rest add nothing.
 /// Source: beyond the paper (Hormann and Greiner 2000), the integrand of Eq. 6 over the face's own area. Off in
 /// `paper`.
-pub struct Conformal<'a> {
-    triangulation: &'a Triangulation,
+pub struct Conformal {
+    triangulation: Arc<Triangulation>,
     faces: Vec<RestFace>,
 }
 
@@ -29,14 +31,14 @@ struct RestFace {
 /// Faces that shrink by more than this against the length of their sides count as this thin.
 const THINNEST: f64 = 1e-6;
 
-impl<'a> Conformal<'a> {
+impl Conformal {
     /// The energy against the shape `rest`.
-    pub fn new(triangulation: &'a Triangulation, rest: &Positions) -> Self {
+    pub fn new(triangulation: &Arc<Triangulation>, rest: &Positions) -> Self {
         let total: f64 = mesh_core::measure::triangle_areas(triangulation, rest)
             .iter()
             .sum();
         Self {
-            triangulation,
+            triangulation: Arc::clone(triangulation),
             faces: triangulation
                 .corners(rest)
                 .map(|corners| rest_face(corners, total))
@@ -62,7 +64,7 @@ fn rest_face([a, b, c]: [Point3; 3], total: f64) -> RestFace {
     }
 }
 
-impl Loss for Conformal<'_> {
+impl Loss for Conformal {
     fn accumulate(&self, x: &Positions, weight: f64, grad: &mut VertexData<Vector3>) -> f64 {
         let mut sum = 0.0;
         for (t, face) in self.triangulation.triangles().iter().zip(&self.faces) {

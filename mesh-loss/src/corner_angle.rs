@@ -1,5 +1,7 @@
 //! Eq. 3, first term: corner angles keep their size.
 
+use std::sync::Arc;
+
 use mesh_core::measure::{area_vector, corner_angle};
 use mesh_core::{Positions, Triangulation, Vector3, VertexData};
 
@@ -12,16 +14,16 @@ use crate::Loss;
 /// A degenerate triangle counts in the value and has no gradient.
 /// Source: Mesh Draping, Eq. 3. Departures: polygons are measured on the fixed triangulation; which shape gives the
 /// angles αⱼ is the caller's choice (the paper: rest; the authors' program: initial).
-pub struct CornerAngle<'a> {
-    triangulation: &'a Triangulation,
+pub struct CornerAngle {
+    triangulation: Arc<Triangulation>,
     reference: Vec<[f64; 3]>,
 }
 
-impl<'a> CornerAngle<'a> {
+impl CornerAngle {
     /// The term that keeps the angles of `reference`.
-    pub fn new(triangulation: &'a Triangulation, reference: &Positions) -> Self {
+    pub fn new(triangulation: &Arc<Triangulation>, reference: &Positions) -> Self {
         Self {
-            triangulation,
+            triangulation: Arc::clone(triangulation),
             reference: triangulation
                 .corners(reference)
                 .map(|[a, b, c]| {
@@ -36,7 +38,7 @@ impl<'a> CornerAngle<'a> {
     }
 }
 
-impl Loss for CornerAngle<'_> {
+impl Loss for CornerAngle {
     fn accumulate(&self, x: &Positions, weight: f64, grad: &mut VertexData<Vector3>) -> f64 {
         let share = 1.0 / x.len().max(1) as f64;
         let mut sum = 0.0;

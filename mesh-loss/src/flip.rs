@@ -1,5 +1,7 @@
 //! Faces keep facing the way they face in the initial shape.
 
+use std::sync::Arc;
+
 use mesh_core::measure::triangle_normal;
 use mesh_core::{Positions, Triangulation, Vector3, VertexData};
 
@@ -12,16 +14,16 @@ use crate::Loss;
 ///
 /// Units: none; 0 when nothing turned, 2 when everything is inside out. Degenerate faces add nothing.
 /// Source: the authors' program, where its weight decays to 0 within each stage. Off in `paper`.
-pub struct Flip<'a> {
-    triangulation: &'a Triangulation,
+pub struct Flip {
+    triangulation: Arc<Triangulation>,
     normals: Vec<Option<Vector3>>,
 }
 
-impl<'a> Flip<'a> {
+impl Flip {
     /// The term that keeps the normals of `reference`.
-    pub fn new(triangulation: &'a Triangulation, reference: &Positions) -> Self {
+    pub fn new(triangulation: &Arc<Triangulation>, reference: &Positions) -> Self {
         Self {
-            triangulation,
+            triangulation: Arc::clone(triangulation),
             normals: triangulation
                 .corners(reference)
                 .map(triangle_normal)
@@ -30,7 +32,7 @@ impl<'a> Flip<'a> {
     }
 }
 
-impl Loss for Flip<'_> {
+impl Loss for Flip {
     fn accumulate(&self, x: &Positions, weight: f64, grad: &mut VertexData<Vector3>) -> f64 {
         let share = 1.0 / self.normals.len().max(1) as f64;
         let mut sum = 0.0;

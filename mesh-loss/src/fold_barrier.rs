@@ -1,5 +1,7 @@
 //! No edge folds over.
 
+use std::sync::Arc;
+
 use mesh_core::measure::{mean_edge_length, smallest_height, triangle_normal};
 use mesh_core::{Positions, Triangulation, TriangulationEdge, Vector3, VertexData, VertexId};
 
@@ -15,8 +17,8 @@ use crate::Loss;
 ///
 /// Units: none; 0 while no edge bends past the limit. Edges at a degenerate face add nothing.
 /// Source: beyond the paper. Off in `paper`.
-pub struct FoldBarrier<'a> {
-    triangulation: &'a Triangulation,
+pub struct FoldBarrier {
+    triangulation: Arc<Triangulation>,
     edges: Vec<TriangulationEdge>,
     limits: Vec<f64>,
     weights: Vec<f64>,
@@ -25,10 +27,10 @@ pub struct FoldBarrier<'a> {
 /// Edges whose faces are at least this high, in mean edge lengths, count in full.
 const FULL_HEIGHT: f64 = 1.0 / 6.0;
 
-impl<'a> FoldBarrier<'a> {
+impl FoldBarrier {
     /// The barrier for a mesh whose rest shape is `rest`; `limit` in −1..=1 is the cosine at which an edge that was
     /// flatter at rest begins to count.
-    pub fn new(triangulation: &'a Triangulation, rest: &Positions, limit: f64) -> Self {
+    pub fn new(triangulation: &Arc<Triangulation>, rest: &Positions, limit: f64) -> Self {
         let edges = triangulation.interior_edges();
         let normals = normals(triangulation, rest);
         let limits = edges
@@ -48,7 +50,7 @@ impl<'a> FoldBarrier<'a> {
             })
             .collect();
         Self {
-            triangulation,
+            triangulation: Arc::clone(triangulation),
             edges,
             limits,
             weights,
@@ -115,9 +117,9 @@ impl<'a> FoldBarrier<'a> {
     }
 }
 
-impl Loss for FoldBarrier<'_> {
+impl Loss for FoldBarrier {
     fn accumulate(&self, x: &Positions, weight: f64, grad: &mut VertexData<Vector3>) -> f64 {
-        let normals = normals(self.triangulation, x);
+        let normals = normals(&self.triangulation, x);
         self.accumulate_with(|t| normals[t], 0..self.edges.len(), x, weight, grad)
     }
 }
@@ -135,7 +137,7 @@ mod tests {
     #[test]
     fn edges_nearby_give_the_gradient_there_to_the_bit() {
         let (mesh, rest) = shapes::quad_sphere(6).into_halfedge().unwrap();
-        let triangulation = Triangulation::new(&mesh, &rest);
+        let triangulation = Arc::new(Triangulation::new(&mesh, &rest));
         let mut x = rest.clone();
         for v in x.ids().step_by(3) {
             x[v] *= 0.4;

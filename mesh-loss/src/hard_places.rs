@@ -1,11 +1,10 @@
 //! Corners that are far off, kept in mind from one iteration to the next.
 
-use mesh_core::sampling::TrianglePlace;
+use mesh_core::sampling::{SeededRng, TrianglePlace};
 use mesh_core::{Location, Point3, Positions, SurfaceSample, TargetSurface, Triangulation};
-use rand::{Rng, RngCore};
 
-use crate::matching::SurfaceMatch;
-use crate::pairing::{Side, NO_HINT};
+use crate::matches::SurfaceMatch;
+use crate::surfaces::{Surfaces, NO_HINT};
 
 /// The corners kept in mind, as rows: what a matcher remembers from one resampling to the next.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -57,17 +56,17 @@ impl HardPlaces {
     /// The mesh's far corners, each with its closest point on the target.
     pub(crate) fn match_mesh(
         &mut self,
-        side: &Side<'_>,
-        rng: &mut dyn RngCore,
+        surfaces: &Surfaces<'_>,
+        rng: &mut SeededRng,
     ) -> Vec<SurfaceMatch> {
-        let n = side.config.n_hard;
+        let n = surfaces.config.n_hard;
         let mut rows = std::mem::take(&mut self.kept.of_mesh);
         rows.extend(random_rows(n, self.mesh_corners.len(), rng));
         let places: Vec<TrianglePlace> = rows.iter().map(|&k| self.mesh_corners[k]).collect();
         let pairs = with_hints(&rows, &mut self.hints[0], |hints, pairs| {
-            side.match_places(&places, hints, pairs);
+            surfaces.match_places(&places, hints, pairs);
         });
-        let (rows, pairs) = farthest(rows, pairs, side.x, n);
+        let (rows, pairs) = farthest(rows, pairs, surfaces.x, n);
         self.kept.of_mesh = rows;
         pairs
     }
@@ -75,15 +74,15 @@ impl HardPlaces {
     /// The target's far corners, each with its closest place on the mesh.
     pub(crate) fn match_target(
         &mut self,
-        side: &Side<'_>,
-        rng: &mut dyn RngCore,
+        surfaces: &Surfaces<'_>,
+        rng: &mut SeededRng,
     ) -> Vec<SurfaceMatch> {
-        let n = side.config.n_hard;
+        let n = surfaces.config.n_hard;
         let mut rows = std::mem::take(&mut self.kept.of_target);
         rows.extend(random_rows(n, self.target_corners.len(), rng));
         let (corners, own) = (&self.target_corners, &mut self.own);
         let sample = |&k: &usize| {
-            let find = || side.target.closest_point(&corners[k]).location;
+            let find = || surfaces.target.closest_point(&corners[k]).location;
             SurfaceSample {
                 point: corners[k],
                 location: *own[k].get_or_insert_with(find),
@@ -91,9 +90,9 @@ impl HardPlaces {
         };
         let samples: Vec<SurfaceSample> = rows.iter().map(sample).collect();
         let pairs = with_hints(&rows, &mut self.hints[1], |hints, pairs| {
-            side.match_samples(&samples, hints, pairs);
+            surfaces.match_samples(&samples, hints, pairs);
         });
-        let (rows, pairs) = farthest(rows, pairs, side.x, n);
+        let (rows, pairs) = farthest(rows, pairs, surfaces.x, n);
         self.kept.of_target = rows;
         pairs
     }
@@ -117,9 +116,9 @@ impl HardPlaces {
 }
 
 /// `n` random rows of `len`; none of an empty list.
-fn random_rows(n: usize, len: usize, rng: &mut dyn RngCore) -> impl Iterator<Item = usize> + '_ {
+fn random_rows(n: usize, len: usize, rng: &mut SeededRng) -> impl Iterator<Item = usize> + '_ {
     let n = if len == 0 { 0 } else { n };
-    (0..n).map(move |_| rng.random_range(0..len))
+    (0..n).map(move |_| rng.below(len))
 }
 
 /// The pairs that `work` finds; it uses and renews the hints of these rows.

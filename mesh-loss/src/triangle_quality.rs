@@ -1,5 +1,7 @@
 //! Eq. 4 as a penalty: no skinny triangles.
 
+use std::sync::Arc;
+
 use mesh_core::measure::triangle_quality;
 use mesh_core::{Positions, Triangulation, Vector3, VertexData};
 
@@ -13,14 +15,22 @@ use crate::Loss;
 /// Units: none. No such face gives 0.
 /// Source: Mesh Draping, Eq. 4 and the text after it (threshold 0.1). Departures: the mean (as the authors' program)
 /// where the paper leaves sum or mean open; triangles of the fixed triangulation.
-pub struct TriangleQuality<'a> {
-    /// The faces.
-    pub triangulation: &'a Triangulation,
-    /// Faces below count.
-    pub threshold: f64,
+pub struct TriangleQuality {
+    triangulation: Arc<Triangulation>,
+    threshold: f64,
 }
 
-impl Loss for TriangleQuality<'_> {
+impl TriangleQuality {
+    /// The penalty on the triangles whose quality is below `threshold`, 0..=1.
+    pub fn new(triangulation: &Arc<Triangulation>, threshold: f64) -> Self {
+        Self {
+            triangulation: Arc::clone(triangulation),
+            threshold,
+        }
+    }
+}
+
+impl Loss for TriangleQuality {
     fn accumulate(&self, x: &Positions, weight: f64, grad: &mut VertexData<Vector3>) -> f64 {
         let skinny: Vec<_> = self
             .triangulation

@@ -1,12 +1,10 @@
 //! Distances between a draped mesh and its target, both ways, in the common frame.
 
-use mesh_core::sampling::TriangleSampler;
+use mesh_core::sampling::{SeededRng, TriangleSampler};
 use mesh_core::{
     Location, Point3, Positions, SurfacePoint, TargetSurface, TriangleBvh, Triangulation, Vector3,
     VertexData,
 };
-use rand::{RngCore, SeedableRng};
-use rand_chacha::ChaCha8Rng;
 
 use crate::evaluate::EvaluationConfig;
 use crate::normalize::common_frame;
@@ -71,7 +69,7 @@ impl SurfaceDistances {
         target: &dyn TargetSurface,
         config: &EvaluationConfig,
     ) -> Self {
-        let mut rng = ChaCha8Rng::seed_from_u64(config.seed);
+        let mut rng = SeededRng::new(config.seed);
         let unit = 1.0 / common_frame(target).scale;
         let to_target = |points: &[Point3]| lengths(&target.closest_points(points), unit);
         let bvh = TriangleBvh::new(triangulation.corners(draped).collect());
@@ -116,7 +114,7 @@ fn lengths(closest: &[SurfacePoint], unit: f64) -> Vec<f64> {
         .collect()
 }
 
-fn target_sample(target: &dyn TargetSurface, n: usize, rng: &mut dyn RngCore) -> Vec<Point3> {
+fn target_sample(target: &dyn TargetSurface, n: usize, rng: &mut SeededRng) -> Vec<Point3> {
     target.sample(n, rng).iter().map(|s| s.point).collect()
 }
 
@@ -125,7 +123,7 @@ fn sample_by_area(
     triangulation: &Triangulation,
     x: &Positions,
     n: usize,
-    rng: &mut ChaCha8Rng,
+    rng: &mut SeededRng,
 ) -> Vec<Point3> {
     let corners: Vec<[Point3; 3]> = triangulation.corners(x).collect();
     let areas = mesh_core::measure::triangle_areas(triangulation, x);

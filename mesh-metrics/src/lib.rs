@@ -12,6 +12,8 @@
 //!
 //! Polygons are measured on the triangles of [`mesh_core::Triangulation`], chosen once at rest. Another judge may cut
 //! a polygon with five or more sides, or a concave quad, otherwise; its figures then differ slightly.
+//!
+//! The crate whose types the signatures name, [`mesh_core`], is exported again.
 
 mod chamfer;
 mod defects;
@@ -40,3 +42,5 @@ pub use report::{
     Defects, DistanceSummary, LandmarkFit, LandmarkResidual, Places, Report, TruthError,
 };
 pub use self_intersection::self_intersections;
+
+pub use mesh_core;

@@ -1,7 +1,9 @@
 //! The operator whose minimisers bend as little as they can, and products with it.
 
-use mesh_core::{Vector3, VertexData};
+use mesh_core::VertexData;
 use nalgebra_sparse::CsrMatrix;
+
+use crate::SolveValue;
 
 /// A vertex counts as at least this share of the mean mass, so that `M⁻¹` exists.
 const MIN_MASS: f64 = 1e-6;
@@ -41,15 +43,18 @@ pub fn bilaplacian(l: &CsrMatrix<f64>, mass: &VertexData<f64>) -> CsrMatrix<f64>
     l * &pointwise_laplacian(l, mass)
 }
 
-/// `a · x`, one vector for each row of `a`.
+/// `a · x`, one value for each row of `a`.
 ///
 /// # Panics
-/// If `x` has not one vector for each column of `a`.
-pub fn multiply(a: &CsrMatrix<f64>, x: &[Vector3]) -> Vec<Vector3> {
-    assert_eq!(a.ncols(), x.len(), "one vector for each column");
+/// If `x` has not one value for each column of `a`.
+pub fn multiply<T: SolveValue>(a: &CsrMatrix<f64>, x: &[T]) -> Vec<T> {
+    assert_eq!(a.ncols(), x.len(), "one value for each column");
     let product = |row: nalgebra_sparse::csr::CsrRow<'_, f64>| {
         let terms = row.col_indices().iter().zip(row.values());
-        terms.fold(Vector3::zeros(), |sum, (&j, &value)| sum + x[j] * value)
+        terms.fold(T::default(), |mut sum, (&j, &value)| {
+            sum += x[j] * value;
+            sum
+        })
     };
     a.row_iter().map(product).collect()
 }

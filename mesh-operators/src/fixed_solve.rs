@@ -1,13 +1,32 @@
 //! Minimising a quadratic form with some rows held at given values.
 
-use mesh_core::{Vector3, VertexId};
+use mesh_core::VertexId;
 use nalgebra_sparse::{CooMatrix, CsrMatrix};
 
-use crate::{SolveError, SpdSolver};
+use crate::{SolveError, SolveValue, SpdSolver};
 
 /// Minimiser of `½ xᵀ A x − bᵀ x` where some rows of `x` are held: `A_ff x_f = b_f − A_fh x_h`.
 ///
-/// The free block is factored once; held values and `b` may change with every solve.
+/// The free block is factored once; held values and `b` may change with every solve. The rows of `x` and `b` are
+/// numbers or vectors ([`SolveValue`]). With the integrated Laplacian as `A` and the mass of each vertex times `f` as
+/// `b`, it solves Poisson's equation `−Δx = f`.
+///
+/// ```
+/// use mesh_operators::mesh_core::{shapes, Triangulation, VertexId};
+/// use mesh_operators::{cotan_laplacian, FixedSolve, FixedSolveScratch};
+/// let (mesh, x) = shapes::open_grid(4, 4).into_halfedge()?;
+/// let laplacian = cotan_laplacian(&Triangulation::new(&mesh, &x), &x);
+/// let boundary: Vec<VertexId> = mesh.vertices().filter(|&v| mesh.is_boundary_vertex(v)).collect();
+/// // The harmonic function that is x + 2 y on the boundary is x + 2 y inside.
+/// let expected: Vec<f64> = x.iter().map(|p| p.x + 2.0 * p.y).collect();
+/// let mut u = vec![0.0; x.len()];
+/// for v in &boundary {
+///     u[v.index()] = expected[v.index()];
+/// }
+/// FixedSolve::new(&laplacian, &boundary)?.solve_in_place(&mut u, &mut FixedSolveScratch::default());
+/// assert!(u.iter().zip(&expected).all(|(u, e)| (u - e).abs() < 1e-12));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct FixedSolve {
     free: Vec<VertexId>,
@@ -80,29 +99,29 @@ impl FixedSolve {
     ///
     /// # Panics
     /// If `x` has not N rows.
-    pub fn solve_in_place(&self, x: &mut [Vector3], scratch: &mut FixedSolveScratch) {
-        self.solve(x, |_| Vector3::zeros(), scratch);
+    pub fn solve_in_place<T: SolveValue>(&self, x: &mut [T], scratch: &mut FixedSolveScratch<T>) {
+        self.solve(x, |_| T::default(), scratch);
     }
 
     /// Replaces the free rows of `x` by the minimiser of `½ xᵀ A x − bᵀ x` for the held ones in it.
     ///
     /// # Panics
     /// If `x` and `b` have not N rows.
-    pub fn solve_with_in_place(
+    pub fn solve_with_in_place<T: SolveValue>(
         &self,
-        x: &mut [Vector3],
-        b: &[Vector3],
-        scratch: &mut FixedSolveScratch,
+        x: &mut [T],
+        b: &[T],
+        scratch: &mut FixedSolveScratch<T>,
     ) {
         assert_eq!(x.len(), b.len(), "one right-hand side for each row");
         self.solve(x, |v| b[v.index()], scratch);
     }
 
-    fn solve(
+    fn solve<T: SolveValue>(
         &self,
-        x: &mut [Vector3],
-        b: impl Fn(VertexId) -> Vector3,
-        scratch: &mut FixedSolveScratch,
+        x: &mut [T],
+        b: impl Fn(VertexId) -> T,
+        scratch: &mut FixedSolveScratch<T>,
     ) {
         assert_eq!(
             x.len(),
@@ -117,8 +136,9 @@ impl FixedSolve {
                 .zip(self.coupling.row_iter())
                 .map(|(&v, row)| {
                     let terms = row.col_indices().iter().zip(row.values());
-                    terms.fold(b(v), |sum, (&j, &value)| {
-                        sum - x[self.held[j].index()] * value
+                    terms.fold(b(v), |mut sum, (&j, &value)| {
+                        sum -= x[self.held[j].index()] * value;
+                        sum
                     })
                 }),
         );
@@ -131,7 +151,7 @@ impl FixedSolve {
 
 /// Room that repeated solves share, so that they allocate nothing.
 #[derive(Clone, Debug, Default)]
-pub struct FixedSolveScratch {
-    rhs: Vec<Vector3>,
-    solver: Vec<Vector3>,
+pub struct FixedSolveScratch<T> {
+    rhs: Vec<T>,
+    solver: Vec<T>,
 }

@@ -10,8 +10,9 @@
 //! | extend displacements to all of space | [`SpaceExtension`] |
 //! | measure along a surface | [`geodesic_distance_unfolded`] |
 //!
-//! Matrices are `nalgebra_sparse::CsrMatrix<f64>`, one row per vertex; polygons count as the triangles of their
-//! [`mesh_core::Triangulation`].
+//! Matrices are [`nalgebra_sparse::CsrMatrix`] of `f64`, one row per vertex; polygons count as the triangles of their
+//! [`mesh_core::Triangulation`]. Right-hand sides are numbers or vectors ([`SolveValue`]). The crates that the signatures
+//! name, [`mesh_core`] (with its `nalgebra`) and [`nalgebra_sparse`], are exported again, so that one dependency is enough.
 
 mod bilaplacian;
 mod cotan_laplacian;
@@ -33,4 +34,5 @@ pub use space_extension::{Kernel, SpaceExtension};
 pub use spd_solver::{SolveValue, SpdSolver};
 pub use uniform_laplacian::uniform_laplacian;
 
-pub use nalgebra_sparse::CsrMatrix;
+pub use mesh_core;
+pub use nalgebra_sparse::{self, CsrMatrix};

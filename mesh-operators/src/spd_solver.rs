@@ -11,13 +11,13 @@ use faer::sparse::linalg::cholesky::{
 };
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 use faer::{Par, Side};
-use mesh_core::Vector3;
 use nalgebra_sparse::pattern::SparsityPattern;
 use nalgebra_sparse::CsrMatrix;
 
 use crate::SolveError;
 
-/// What one row of a right-hand side holds: a number, or a vector whose components are solved side by side.
+/// What one row of a right-hand side holds: a number (`f64`), or a vector (`Vector3`) whose components are solved side
+/// by side.
 pub trait SolveValue: Copy + Default + AddAssign + SubAssign + Mul<f64, Output = Self> {}
 
 impl<T: Copy + Default + AddAssign + SubAssign + Mul<f64, Output = T>> SolveValue for T {}
@@ -28,11 +28,14 @@ impl<T: Copy + Default + AddAssign + SubAssign + Mul<f64, Output = T>> SolveValu
 /// the number of threads. Solves walk the factor once for all components of a [`SolveValue`].
 ///
 /// ```
-/// use mesh_core::{Vector3, VertexId};
+/// use mesh_operators::mesh_core::{Vector3, VertexId};
 /// use mesh_operators::{uniform_laplacian, CsrMatrix, SpdSolver};
 /// let [a, b] = [0, 1].map(VertexId::new);
 /// let smooth = CsrMatrix::identity(2) + uniform_laplacian(2, [[a, b]]); // [2 −1; −1 2]
-/// let x = SpdSolver::new(&smooth)?.solve(&[Vector3::new(3., 0., 1.), Vector3::new(0., 3., 1.)]);
+/// let solver = SpdSolver::new(&smooth)?;
+/// let x = solver.solve(&[3.0, 0.0]);
+/// assert!((x[0] - 2.0).abs() < 1e-12 && (x[1] - 1.0).abs() < 1e-12);
+/// let x = solver.solve(&[Vector3::new(3., 0., 1.), Vector3::new(0., 3., 1.)]);
 /// assert!((x[0] - Vector3::new(2., 1., 1.)).norm() < 1e-12);
 /// # Ok::<(), mesh_operators::SolveError>(())
 /// ```
@@ -99,11 +102,11 @@ impl SpdSolver {
         self.values.len()
     }
 
-    /// `A⁻¹ rhs`, all three components in one pass.
+    /// `A⁻¹ rhs`; where its rows are vectors, all their components in one pass.
     ///
     /// # Panics
-    /// If there is not one vector for each row.
-    pub fn solve(&self, rhs: &[Vector3]) -> Vec<Vector3> {
+    /// If there is not one value for each row.
+    pub fn solve<T: SolveValue>(&self, rhs: &[T]) -> Vec<T> {
         let mut x = rhs.to_vec();
         self.solve_in_place(&mut x, &mut Vec::new());
         x

@@ -1,10 +1,13 @@
 //! Every setting of a drape. Lengths are in the unit frame of the target: its longest side is 1.
 
+use mesh_core::{Positions, Triangulation};
 use mesh_loss::{Overlap, SamplingConfig};
 use serde::{Deserialize, Serialize};
 
 use crate::network::NetworkConfig;
-use crate::VerticesConfig;
+use crate::schedule::{LearningRate, Stage};
+use crate::vertices::{Vertices, VerticesConfig};
+use crate::{DrapeError, Parametrization};
 
 /// Settings of [`crate::Drape`].
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -55,29 +58,20 @@ pub enum ParametrizationConfig {
     Vertices(VerticesConfig),
 }
 
-/// Adam's step length over the run.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct LearningRate {
-    /// The largest value.
-    pub peak: f64,
-    /// Iterations over which it rises linearly to the peak.
-    pub warm_up: usize,
-    /// Share of the run at its end over which it falls linearly to 0; 0..=1.
-    pub decay: f64,
-}
-
-impl LearningRate {
-    /// The step length at an iteration counted from 0.
-    pub fn at(&self, iteration: usize, n_iterations: usize) -> f64 {
-        let rise = (iteration + 1) as f64 / (self.warm_up + 1) as f64;
-        let left = (n_iterations - iteration) as f64 / n_iterations.max(1) as f64;
-        let fall = if self.decay > 0.0 {
-            left / self.decay
-        } else {
-            1.0
-        };
-        self.peak * rise.min(1.0) * fall.min(1.0)
+impl ParametrizationConfig {
+    /// The map that moves `initial`, in the unit frame, with its optimiser.
+    pub(crate) fn build(
+        &self,
+        triangulation: &Triangulation,
+        initial: &Positions,
+        seed: u64,
+    ) -> Result<Box<dyn Parametrization>, DrapeError> {
+        match self {
+            Self::Network(network) => network.build(initial, seed),
+            Self::Vertices(vertices) => {
+                Ok(Box::new(Vertices::new(triangulation, initial, vertices)?))
+            }
+        }
     }
 }
 
@@ -138,9 +132,7 @@ pub struct Sampling {
 
 impl Sampling {
     pub(crate) fn at(&self, iteration: usize, overlap: Overlap, mutual: f64) -> SamplingConfig {
-        let doublings = self
-            .double_every
-            .map_or(0, |every| iteration / every.max(1));
+        let doublings = self.double_every.map_or(0, |every| iteration / every);
         let factor = 1usize
             .checked_shl(doublings.min(40) as u32)
             .unwrap_or(usize::MAX);
@@ -154,84 +146,6 @@ impl Sampling {
             n_hard: self.n_hard,
             overlap,
             mutual,
-        }
-    }
-}
-
-/// A part of the run whose weights go from one set to another.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Stage {
-    /// How many iterations it takes.
-    pub n_iterations: usize,
-    /// Weights at its start.
-    pub from: Weights,
-    /// Weights at its end; in between they follow a straight line.
-    pub to: Weights,
-}
-
-/// Weights of the terms; a term of weight 0 is not computed.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Weights {
-    /// [`mesh_loss::Chamfer`]
-    pub chamfer: f64,
-    /// [`mesh_loss::WorstDistance`]
-    pub worst_distance: f64,
-    /// [`mesh_loss::NormalAgreement`]
-    pub normal_agreement: f64,
-    /// [`mesh_loss::LandmarkDistance`]
-    pub landmark: f64,
-    /// [`mesh_loss::CornerAngle`]
-    pub corner_angle: f64,
-    /// [`mesh_loss::AreaKl`]
-    pub area_kl: f64,
-    /// [`mesh_loss::TriangleQuality`]
-    pub triangle_quality: f64,
-    /// [`mesh_loss::Flip`]
-    pub flip: f64,
-    /// [`mesh_loss::FoldBarrier`]
-    pub fold_barrier: f64,
-    /// [`mesh_loss::Conformal`]
-    pub conformal: f64,
-    /// [`mesh_loss::LocalShape`]
-    pub local_shape: f64,
-    /// [`mesh_loss::Drift`], from where each stage starts
-    pub drift: f64,
-}
-
-impl Weights {
-    /// Nothing counts.
-    pub const ZERO: Self = Self {
-        chamfer: 0.0,
-        worst_distance: 0.0,
-        normal_agreement: 0.0,
-        landmark: 0.0,
-        corner_angle: 0.0,
-        area_kl: 0.0,
-        triangle_quality: 0.0,
-        flip: 0.0,
-        fold_barrier: 0.0,
-        conformal: 0.0,
-        local_shape: 0.0,
-        drift: 0.0,
-    };
-
-    pub(crate) fn between(a: &Self, b: &Self, t: f64) -> Self {
-        let mix = |a: f64, b: f64| a + (b - a) * t;
-        Self {
-            chamfer: mix(a.chamfer, b.chamfer),
-            worst_distance: mix(a.worst_distance, b.worst_distance),
-            normal_agreement: mix(a.normal_agreement, b.normal_agreement),
-            landmark: mix(a.landmark, b.landmark),
-            corner_angle: mix(a.corner_angle, b.corner_angle),
-            area_kl: mix(a.area_kl, b.area_kl),
-            triangle_quality: mix(a.triangle_quality, b.triangle_quality),
-            flip: mix(a.flip, b.flip),
-            fold_barrier: mix(a.fold_barrier, b.fold_barrier),
-            conformal: mix(a.conformal, b.conformal),
-            local_shape: mix(a.local_shape, b.local_shape),
-            drift: mix(a.drift, b.drift),
         }
     }
 }

@@ -6,7 +6,6 @@ use mesh_core::{
 use mesh_loss::{Beyond, Overlap};
 
 use crate::config::OverlapMode;
-use crate::DrapeInput;
 
 /// Random places on each shape that tell how far it reaches beyond the other.
 pub(crate) const N_BEYOND: usize = 4000;
@@ -90,11 +89,18 @@ impl Pairing {
     }
 }
 
-/// Marks what the target lacks, where the settings let parts be left out and it is enough; `beyond` counts it.
-pub(crate) fn lacking(
-    input: &DrapeInput<'_>,
+/// A target and the frame of the mesh that is draped over it.
+#[derive(Clone, Copy)]
+pub(crate) struct Target<'a> {
+    pub(crate) surface: &'a dyn TargetSurface,
+    pub(crate) frame: &'a UnitFrame,
+}
+
+/// Marks what the target does not cover, where the settings let parts be left out and it is enough; `beyond` counts it.
+pub(crate) fn mark_uncovered(
+    triangulation: &Triangulation,
     initial: &Positions,
-    frame: &UnitFrame,
+    target: Target<'_>,
     mode: OverlapMode,
     beyond: &mut Beyond,
 ) -> VertexData<bool> {
@@ -107,10 +113,10 @@ pub(crate) fn lacking(
     } else {
         0.0
     };
-    let lacking = uncovered(input.triangulation, initial, input.target, frame, least);
-    let share = area_share(input.triangulation, initial, &lacking);
+    let is_uncovered = uncovered(triangulation, initial, target, least);
+    let share = area_share(triangulation, initial, &is_uncovered);
     beyond.of_mesh = beyond.of_mesh.max(share);
-    lacking
+    is_uncovered
 }
 
 /// Marks the vertices of the mesh at `x` (in `frame`) that the target does not cover: shoulders over a bust that ends
@@ -122,12 +128,11 @@ pub(crate) fn lacking(
 fn uncovered(
     triangulation: &Triangulation,
     x: &Positions,
-    target: &dyn TargetSurface,
-    frame: &UnitFrame,
+    Target { surface, frame }: Target<'_>,
     least: f64,
 ) -> VertexData<bool> {
     let outside: Vec<Point3> = x.iter().map(|p| frame.from_unit(p)).collect();
-    let there: Vec<Point3> = target
+    let there: Vec<Point3> = surface
         .closest_points(&outside)
         .iter()
         .map(|hit| frame.to_unit(&hit.point))
@@ -220,7 +225,7 @@ mod tests {
     }
 
     #[test]
-    fn what_the_target_lacks_is_marked_and_nothing_else() {
+    fn what_the_target_does_not_cover_is_marked_and_nothing_else() {
         let (mesh, rest) = bust(-9.0).into_halfedge().unwrap();
         let triangulation = Triangulation::new(&mesh, &rest);
         let share = |floor: f64| {
@@ -230,7 +235,11 @@ mod tests {
                 max: Point3::new(1.0, 2.0, 1.0),
             });
             let x = rest.map(|p| frame.to_unit(p));
-            let marked = uncovered(&triangulation, &x, &target, &frame, 0.0);
+            let target = Target {
+                surface: &target,
+                frame: &frame,
+            };
+            let marked = uncovered(&triangulation, &x, target, 0.0);
             for v in x.ids().filter(|&v| marked[v]) {
                 assert!(rest[v].y < floor, "{}", rest[v]);
             }

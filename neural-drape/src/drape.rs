@@ -1,40 +1,25 @@
 //! The stepper: one engine for every parametrisation and every preset.
 
-use mesh_core::{
-    Landmark, Positions, Profile, TargetSurface, Triangulation, UnitFrame, Vector3, VertexData,
-    VertexId,
-};
-use mesh_loss::{
-    Beyond, Chamfer, HardCorners, LandmarkDistance, Matches, NormalAgreement, Overlap,
-    SurfaceMatcher, WorstDistance,
-};
-use rand::SeedableRng;
-use rand_chacha::ChaCha8Rng;
+use std::sync::Arc;
 
-use crate::config::{Descent, DrapeConfig, ParametrizationConfig, Stage, Weights};
-use crate::coverage::{lacking, Pairing, FAR_BEYOND, N_BEYOND};
-use crate::network::{Network, NetworkMap};
+use mesh_core::sampling::SeededRng;
+use mesh_core::{
+    Landmark, Positions, Profile, Triangulation, UnitFrame, Vector3, VertexData, VertexId,
+};
+use mesh_loss::{Beyond, HardCorners, Matches, Overlap, SurfaceMatcher};
+
+use crate::config::{Descent, DrapeConfig};
+use crate::coverage::{mark_uncovered, Pairing, Target, FAR_BEYOND, N_BEYOND};
+use crate::input::{check_finite, check_landmarks};
+use crate::network::NetworkMap;
+use crate::objective::{self, DistanceLoss, StructuralLoss, TermReport};
 use crate::regions::{Follow, Guidance, Regions};
-use crate::terms::{accumulate, Structure, Term, TermReport};
-use crate::{DrapeError, DrapeState, Parametrization, Repair, Vertices};
+use crate::schedule::{Stage, Weights};
+use crate::setting::MAX_COUNT;
+use crate::{DrapeError, DrapeInput, DrapeState, Parametrization, Repair};
 
 /// So many times in a run, parts that nothing attracts follow the rest.
 const N_FOLLOWS: usize = 5;
-
-/// What is draped over what.
-#[derive(Clone, Copy)]
-pub struct DrapeInput<'a> {
-    /// The source's polygons as triangles.
-    pub triangulation: &'a Triangulation,
-    /// The source as given: its shape is kept.
-    pub rest: &'a Positions,
-    /// Where the drape starts, in the target's coordinates.
-    pub initial: &'a Positions,
-    /// The shape to drape over.
-    pub target: &'a dyn TargetSurface,
-    /// Places that belong together.
-    pub landmarks: &'a [Landmark],
-}
 
 /// What one iteration did.
 #[derive(Clone, Debug, PartialEq)]
@@ -45,56 +30,144 @@ pub struct StepReport {
     pub n_iterations: usize,
     /// Each term before the step.
     pub terms: Vec<TermReport>,
-    /// Σ weight · value
+    /// Eq. 1, `L = L_d + λ L_s`: Σ weight · value over the terms.
     pub total: f64,
 }
 
 /// A drape in progress. Dropping it cancels it; between steps it can be read and its landmarks changed.
-pub struct Drape<'a> {
+///
+/// It owns or shares all that it needs, so that a window or another thread can hold it.
+pub struct Drape {
     config: DrapeConfig,
     frame: UnitFrame,
     parametrization: Box<dyn Parametrization>,
     landmarks: Vec<Landmark>,
-    matcher: SurfaceMatcher<'a>,
-    structure: Structure<'a>,
+    matcher: SurfaceMatcher,
+    structure: StructuralLoss,
     beyond: Beyond,
     pairing: Pairing,
-    input: DrapeInput<'a>,
+    triangulation: Arc<Triangulation>,
+    rest: Arc<Positions>,
+    /// In the unit frame.
+    initial: Positions,
     is_uncovered: VertexData<bool>,
     guidance: Guidance,
     iteration: usize,
     n_iterations: usize,
     stage_starts: Vec<usize>,
     gradient: VertexData<Vector3>,
-    rng: ChaCha8Rng,
+    rng: SeededRng,
     profile: Profile,
 }
 
-impl<'a> Drape<'a> {
+impl Drape {
     /// A drape at its start: [`Self::positions`] are the initial ones.
     ///
     /// # Errors
-    /// Inputs of different lengths, a mesh without area, a setting out of range.
-    pub fn new(input: DrapeInput<'a>, config: DrapeConfig) -> Result<Self, DrapeError> {
-        check(&input)?;
+    /// Inputs of different lengths or of different meshes, a coordinate that is not finite, a mesh without area, a setting
+    /// out of range or that asks for more memory than there is; settings that move a network where the cargo feature
+    /// `network` is off.
+    pub fn new(input: DrapeInput<'_>, config: DrapeConfig) -> Result<Self, DrapeError> {
+        let (what, seed) = (config.parametrization.clone(), config.seed);
+        Self::with_parametrization(input, config, |initial| {
+            what.build(input.triangulation, initial, seed)
+        })
+    }
+
+    /// A drape that moves its vertices by a map of your own; `config.parametrization` does not count.
+    ///
+    /// `make` is given the initial positions in the unit frame of the target, one per vertex; the positions of what it
+    /// returns are in that frame, too.
+    ///
+    /// A drape that only shifts the source as a whole, by 3 parameters t: `x = x₀ + t`, `dL/dt = Σᵢ dL/dxᵢ`.
+    ///
+    /// ```
+    /// use std::sync::Arc;
+    /// use mesh_core::{shapes, Positions, TargetSurface, TriangleSoup, Triangulation, Vector3, VertexData};
+    /// use neural_drape::{
+    ///     Drape, DrapeConfig, DrapeError, DrapeInput, Parametrization, StateReader, StateWriter,
+    /// };
+    ///
+    /// struct Shift(Positions);
+    ///
+    /// impl Parametrization for Shift {
+    ///     fn positions(&self) -> &Positions {
+    ///         &self.0
+    ///     }
+    ///     fn descend(&mut self, gradient: &VertexData<Vector3>, rate: f64) -> Result<(), DrapeError> {
+    ///         let sum: Vector3 = gradient.iter().sum();
+    ///         let step = sum.try_normalize(1e-12).unwrap_or_default() * rate;
+    ///         self.0.iter_mut().for_each(|p| *p -= step);
+    ///         Ok(())
+    ///     }
+    ///     fn set_progress(&mut self, _progress: f64) -> Result<(), DrapeError> {
+    ///         Ok(())
+    ///     }
+    ///     fn displace(&mut self, displacements: &VertexData<Vector3>) {
+    ///         self.0.iter_mut().zip(displacements).for_each(|(p, d)| *p += d);
+    ///     }
+    ///     fn save(&mut self, state: &mut StateWriter) {
+    ///         state.points(&self.0);
+    ///     }
+    ///     fn restore(&mut self, state: &mut StateReader<'_>) -> Result<(), DrapeError> {
+    ///         state.points(self.0.iter_mut())
+    ///     }
+    /// }
+    ///
+    /// let (mesh, rest) = shapes::quad_sphere(8).into_halfedge()?;
+    /// let target: Arc<dyn TargetSurface> = Arc::new(TriangleSoup::new(shapes::icosphere(3))?);
+    /// let input = DrapeInput {
+    ///     triangulation: &Arc::new(Triangulation::new(&mesh, &rest)),
+    ///     initial: &rest.map(|p| p + Vector3::new(0.3, 0.2, 0.0)),
+    ///     rest: &Arc::new(rest),
+    ///     target: &target,
+    ///     landmarks: &[],
+    /// };
+    /// let start = |initial: &Positions| Ok(Box::new(Shift(initial.clone())) as Box<dyn Parametrization>);
+    /// let mut drape = Drape::with_parametrization(input, DrapeConfig::quick(), start)?;
+    /// while drape.step()?.is_some() {}
+    /// let x = drape.positions();
+    /// let centre = x.iter().map(|p| p.coords).sum::<Vector3>() / x.len() as f64;
+    /// assert!(centre.norm() < 0.02);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As for [`Self::new`], and what `make` returns.
+    pub fn with_parametrization(
+        input: DrapeInput<'_>,
+        config: DrapeConfig,
+        make: impl FnOnce(&Positions) -> Result<Box<dyn Parametrization>, DrapeError>,
+    ) -> Result<Self, DrapeError> {
+        input.check()?;
         config.check()?;
+        config.check_memory(input.rest.len())?;
         let frame = input.target.principal_frame();
         let initial = input.initial.map(|p| frame.to_unit(p));
-        let parametrization: Box<dyn Parametrization> = match &config.parametrization {
-            ParametrizationConfig::Network(network) => {
-                Box::new(Network::new(&initial, network, config.seed)?)
-            }
-            ParametrizationConfig::Vertices(vertices) => {
-                Box::new(Vertices::new(input.triangulation, &initial, vertices)?)
-            }
-        };
-        let mut rng = ChaCha8Rng::seed_from_u64(config.seed);
+        let parametrization = make(&initial)?;
+        if parametrization.positions().len() != initial.len() {
+            return Err(DrapeError::LengthMismatch {
+                what: "the parametrization",
+                found: parametrization.positions().len(),
+                expected: initial.len(),
+            });
+        }
+        let mut rng = SeededRng::new(config.seed);
         let mut matcher = SurfaceMatcher::new(input.triangulation, &initial, input.target, frame);
         let mut beyond = matcher.beyond(&initial, N_BEYOND, FAR_BEYOND, &mut rng);
         let n_iterations = config.stages.iter().map(|s| s.n_iterations).sum();
         let ends_openly = matcher.has_boundary();
         let pairing = Pairing::new(config.overlap, &beyond, ends_openly, n_iterations);
-        let is_uncovered = lacking(&input, &initial, &frame, config.overlap, &mut beyond);
+        let is_uncovered = mark_uncovered(
+            input.triangulation,
+            &initial,
+            Target {
+                surface: input.target.as_ref(),
+                frame: &frame,
+            },
+            config.overlap,
+            &mut beyond,
+        );
         let none = Regions::none(initial.len());
         let guidance = Guidance::new(
             input.triangulation,
@@ -107,18 +180,20 @@ impl<'a> Drape<'a> {
         let mut drape = Self {
             beyond,
             pairing,
-            input,
             is_uncovered,
             guidance,
             frame,
             parametrization,
             landmarks: Vec::new(),
             matcher,
-            structure: Structure::new(&input, &initial, &config),
+            structure: StructuralLoss::new(input.triangulation, input.rest, &initial, &config),
+            triangulation: Arc::clone(input.triangulation),
+            rest: Arc::clone(input.rest),
             iteration: 0,
             stage_starts: config.stage_starts(),
             n_iterations,
             gradient: VertexData::new(initial.len(), Vector3::zeros()),
+            initial,
             rng,
             profile: Profile::off(),
             config,
@@ -132,7 +207,7 @@ impl<'a> Drape<'a> {
     /// # Errors
     /// The optimisation left the finite numbers.
     pub fn step(&mut self) -> Result<Option<StepReport>, DrapeError> {
-        if self.iteration >= self.n_iterations {
+        if self.is_finished() {
             return Ok(None);
         }
         let weights = self.config.weights_at(self.iteration);
@@ -146,7 +221,7 @@ impl<'a> Drape<'a> {
         })?;
         if self.stage_starts.contains(&self.iteration) {
             let x = self.parametrization.positions();
-            self.structure.anchor(self.input.triangulation, x);
+            self.structure.anchor(&self.triangulation, x);
         }
 
         let (overlap, mutual) = self.pairing.at(self.iteration, progress);
@@ -157,17 +232,13 @@ impl<'a> Drape<'a> {
             .resample(x, &sampling, &mut self.rng, &mut self.profile);
         self.guidance.note(&matches, self.pairing.overlap);
 
-        let mut terms = self.add_distance_terms(&matches, &weights);
+        // Eq. 1: L = L_d + λ L_s, the two descended in turn or as one sum.
+        let distance = self.add_distance_loss(&matches, &weights);
         self.matcher.recycle(matches);
         if self.config.descent == Descent::Alternating {
             self.descend(rate)?;
         }
-        terms.extend(accumulate(
-            &self.structure.terms(&weights),
-            self.parametrization.positions(),
-            &mut self.gradient,
-            &mut self.profile,
-        ));
+        let structure = self.add_structural_loss(&weights);
         self.descend(rate)?;
 
         self.iteration += 1;
@@ -175,8 +246,8 @@ impl<'a> Drape<'a> {
         Ok(Some(StepReport {
             iteration: self.iteration - 1,
             n_iterations: self.n_iterations,
-            total: terms.iter().map(|t| t.weight * t.value).sum(),
-            terms,
+            total: objective::total(&distance, &structure),
+            terms: [distance, structure].concat(),
         }))
     }
 
@@ -193,11 +264,10 @@ impl<'a> Drape<'a> {
     /// Not one entry per vertex, or an attraction outside 0..=1; nothing changed.
     pub fn set_regions(&mut self, regions: &Regions) -> Result<(), DrapeError> {
         regions.check(self.gradient.len())?;
-        let initial = self.input.initial.map(|p| self.frame.to_unit(p));
         self.guidance = Guidance::new(
-            self.input.triangulation,
-            self.input.rest,
-            &initial,
+            &self.triangulation,
+            &self.rest,
+            &self.initial,
             regions,
             &self.is_uncovered,
         );
@@ -208,7 +278,7 @@ impl<'a> Drape<'a> {
     /// Puts bodies and carried pieces where they belong.
     fn settle(&mut self) -> Result<(), DrapeError> {
         let period = (self.n_iterations / N_FOLLOWS).max(1);
-        let is_end = self.iteration >= self.n_iterations;
+        let is_end = self.is_finished();
         let follow = if is_end && self.pairing.overlap.mesh_exceeds {
             Follow::End
         } else if is_end {
@@ -222,7 +292,7 @@ impl<'a> Drape<'a> {
         let x = self.parametrization.positions();
         let correction = self.profile.time("regions", || {
             self.guidance
-                .correction(self.input.triangulation, x, follow, &marked)
+                .correction(&self.triangulation, x, follow, &marked)
         })?;
         if let Some(moves) = correction {
             self.parametrization.displace(&moves);
@@ -241,10 +311,9 @@ impl<'a> Drape<'a> {
         let positions = self.positions();
         if self.config.repair {
             let held: Vec<VertexId> = self.marked().collect();
-            crate::repair(self.input.triangulation, self.input.rest, &positions, &held)
+            crate::repair(&self.triangulation, &self.rest, &positions, &held)
         } else {
-            let defects =
-                crate::repair::defects(self.input.triangulation, self.input.rest, &positions);
+            let defects = crate::repair::defects(&self.triangulation, &self.rest, &positions);
             Repair {
                 positions,
                 left: defects.clone(),
@@ -256,23 +325,9 @@ impl<'a> Drape<'a> {
     /// Replaces the landmarks from the next step on.
     ///
     /// # Errors
-    /// A landmark names a vertex that is not there; the old landmarks stay.
+    /// A landmark names a vertex that is not there, or its place or target is not finite; the old landmarks stay.
     pub fn set_landmarks(&mut self, landmarks: &[Landmark]) -> Result<(), DrapeError> {
-        let n_vertices = self.gradient.len();
-        for (row, landmark) in landmarks.iter().enumerate() {
-            if let Some(v) = landmark
-                .source
-                .vertices
-                .iter()
-                .find(|v| v.index() >= n_vertices)
-            {
-                return Err(DrapeError::LandmarkOutOfRange {
-                    landmark: row,
-                    vertex: v.index(),
-                    n_vertices,
-                });
-            }
-        }
+        check_landmarks(landmarks, self.gradient.len())?;
         self.landmarks = landmarks.to_vec();
         for landmark in &mut self.landmarks {
             landmark.target = self.frame.to_unit(&landmark.target);
@@ -294,23 +349,19 @@ impl<'a> Drape<'a> {
                 expected: self.gradient.len(),
             });
         }
-        let is_finite = |d: &Vector3| d.iter().all(|c| c.is_finite());
-        if !displacements.iter().all(is_finite) {
-            return Err(DrapeError::Diverged {
-                iteration: self.iteration,
-            });
-        }
+        check_finite("the displacement", displacements.iter())?;
         let scale = self.frame.scale;
         self.parametrization
             .displace(&displacements.map(|d| d / scale));
         let x = self.parametrization.positions();
-        self.structure.anchor(self.input.triangulation, x);
+        self.structure.anchor(&self.triangulation, x);
         Ok(())
     }
 
     /// Adds iterations to the run, with the weights that it would have ended with; vertices stay anchored where they
-    /// were.
+    /// were. A run has at most 10⁹ iterations.
     pub fn extend(&mut self, n_iterations: usize) {
+        let n_iterations = n_iterations.min(MAX_COUNT.saturating_sub(self.n_iterations));
         if let Some(&Stage { to, .. }) = self.config.stages.last() {
             self.config.stages.push(Stage {
                 n_iterations,
@@ -326,7 +377,7 @@ impl<'a> Drape<'a> {
         DrapeState::write(|state| {
             state.count(self.iteration);
             state.count(self.n_iterations);
-            state.word_position(self.rng.get_word_pos());
+            state.word_position(self.rng.word_position());
             let hard = self.matcher.hard_corners();
             state.counts(&hard.of_mesh);
             state.counts(&hard.of_target);
@@ -343,12 +394,13 @@ impl<'a> Drape<'a> {
     pub fn restore(&mut self, state: &DrapeState) -> Result<(), DrapeError> {
         let mut reader = state.reader();
         let (iteration, n_iterations) = (reader.count()?, reader.count()?);
-        if iteration > n_iterations || n_iterations < self.n_iterations {
+        let possible = self.n_iterations..=MAX_COUNT;
+        if iteration > n_iterations || !possible.contains(&n_iterations) {
             return Err(DrapeError::ForeignState);
         }
         self.extend(n_iterations - self.n_iterations);
         self.iteration = iteration;
-        self.rng.set_word_pos(reader.word_position()?);
+        self.rng.set_word_position(reader.word_position()?);
         let hard = HardCorners {
             of_mesh: reader.counts()?,
             of_target: reader.counts()?,
@@ -358,7 +410,7 @@ impl<'a> Drape<'a> {
         }
         let mut anchor = self.structure.anchored_at().clone();
         reader.points(anchor.iter_mut())?;
-        self.structure.anchor(self.input.triangulation, &anchor);
+        self.structure.anchor(&self.triangulation, &anchor);
         self.guidance.restore(&mut reader)?;
         self.parametrization.restore(&mut reader)?;
         reader.finish()
@@ -387,6 +439,11 @@ impl<'a> Drape<'a> {
         self.iteration
     }
 
+    /// Whether the run is over: [`Self::step`] does nothing until it is extended.
+    pub fn is_finished(&self) -> bool {
+        self.iteration >= self.n_iterations
+    }
+
     /// How many iterations the run has.
     pub fn n_iterations(&self) -> usize {
         self.n_iterations
@@ -412,6 +469,22 @@ impl<'a> Drape<'a> {
         self.pairing.overlap
     }
 
+    /// Adds dL_d/dx at the present positions (Eq. 2).
+    fn add_distance_loss(&mut self, matches: &Matches, weights: &Weights) -> Vec<TermReport> {
+        let loss = DistanceLoss::new(matches, &self.landmarks, &self.config);
+        let x = self.parametrization.positions();
+        let (gradient, profile) = (&mut self.gradient, &mut self.profile);
+        objective::accumulate(&loss.terms(weights), x, gradient, profile)
+    }
+
+    /// Adds λ dL_s/dx at the present positions (Eq. 3).
+    fn add_structural_loss(&mut self, weights: &Weights) -> Vec<TermReport> {
+        let terms = self.structure.terms(weights);
+        let x = self.parametrization.positions();
+        objective::accumulate(&terms, x, &mut self.gradient, &mut self.profile)
+    }
+
+    /// One step of the optimiser against the gradient, which is zero afterwards.
     fn descend(&mut self, rate: f64) -> Result<(), DrapeError> {
         self.profile.time("solves and step", || {
             self.parametrization.descend(&self.gradient, rate)
@@ -424,41 +497,5 @@ impl<'a> Drape<'a> {
         }
         self.gradient.iter_mut().for_each(|g| *g = Vector3::zeros());
         Ok(())
-    }
-
-    /// Eq. 2 and its companions.
-    fn add_distance_terms(&mut self, matches: &Matches, w: &Weights) -> Vec<TermReport> {
-        let worst = WorstDistance {
-            matches,
-            share: self.config.worst_share,
-            tolerance: self.config.worst_tolerance,
-        };
-        let terms: [Term<'_>; 4] = [
-            ("chamfer", w.chamfer, &Chamfer(matches)),
-            ("worst distance", w.worst_distance, &worst),
-            ("normals", w.normal_agreement, &NormalAgreement(matches)),
-            ("landmarks", w.landmark, &LandmarkDistance(&self.landmarks)),
-        ];
-        let x = self.parametrization.positions();
-        accumulate(&terms, x, &mut self.gradient, &mut self.profile)
-    }
-}
-
-fn check(input: &DrapeInput<'_>) -> Result<(), DrapeError> {
-    let expected = input.rest.len();
-    if input.initial.len() != expected {
-        return Err(DrapeError::LengthMismatch {
-            what: "the initial shape",
-            found: input.initial.len(),
-            expected,
-        });
-    }
-    let area: f64 = mesh_core::measure::triangle_areas(input.triangulation, input.rest)
-        .iter()
-        .sum();
-    if area > 0.0 {
-        Ok(())
-    } else {
-        Err(DrapeError::NoArea)
     }
 }

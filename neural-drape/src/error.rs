@@ -14,6 +14,28 @@ pub enum DrapeError {
         /// How many vertices there are.
         expected: usize,
     },
+    /// The triangles are not those of the shapes.
+    #[error("the triangulation names vertices up to {n_named}, the source has {n_vertices}: it is that of another mesh")]
+    ForeignTriangulation {
+        /// How many vertices the triangulation needs.
+        n_named: usize,
+        /// How many there are.
+        n_vertices: usize,
+    },
+    /// A shape or displacement has an entry that is not finite.
+    #[error("vertex {vertex} of {what} is not a finite number")]
+    VertexNotFinite {
+        /// Which shape.
+        what: &'static str,
+        /// Which vertex.
+        vertex: usize,
+    },
+    /// The place or the target of a landmark is not finite.
+    #[error("landmark {landmark} has a coordinate or weight that is not a finite number")]
+    LandmarkNotFinite {
+        /// Row of the landmark.
+        landmark: usize,
+    },
     /// The mesh has no triangle with an area.
     #[error("the source mesh has no face with an area to drape")]
     NoArea,
@@ -21,11 +43,23 @@ pub enum DrapeError {
     #[error("setting {name} is {value}; it must be {expected}")]
     Setting {
         /// The setting.
-        name: &'static str,
+        name: String,
         /// Its value.
         value: f64,
         /// What is allowed.
         expected: &'static str,
+    },
+    /// A setting asks for more memory than a drape may take.
+    #[error("setting {name} is {value}, which takes about {gib:.0} GiB of memory; at most {limit_gib} are allowed, lower it")]
+    Memory {
+        /// The setting.
+        name: &'static str,
+        /// Its value.
+        value: usize,
+        /// What it takes, in GiB.
+        gib: f64,
+        /// What is allowed, in GiB.
+        limit_gib: f64,
     },
     /// No preset has this name.
     #[error("there is no preset '{name}'; there are {known}")]
@@ -57,7 +91,13 @@ pub enum DrapeError {
     /// The preconditioner could not be factored.
     #[error("the smoothing operator of the mesh could not be factored")]
     Preconditioner(#[from] mesh_operators::SolveError),
+    /// The settings move a network, which this build cannot.
+    #[error("the settings move a network, and neural-drape was built without its feature `network`; choose the preset standard or quick")]
+    NetworkFeatureOff,
+    /// A parametrization of the caller's own could not start or go on.
+    #[error("the parametrization cannot go on")]
+    Parametrization(#[source] Box<dyn std::error::Error + Send + Sync>),
     /// The network's tensors could not be made.
     #[error("no memory for the network's tensors; choose a narrower network")]
-    Network(#[from] dfdx::prelude::CpuError),
+    OutOfMemory,
 }

@@ -11,6 +11,10 @@ use crate::{
 
 /// Longest side of the authors' frame.
 const AUTHORS_SIDE: f64 = 20.0;
+/// λ of Eq. 1 in the first 1000 iterations, and in the rest ("Implementation Details").
+const LAMBDA_PAPER: [f64; 2] = [1.0, 0.2];
+/// λ while landmarks and structure lead, and while the fit does.
+const LAMBDA_STANDARD: [f64; 2] = [1.0, 0.3];
 
 impl DrapeConfig {
     /// The names that [`Self::named`] knows, the default first.
@@ -26,10 +30,15 @@ impl DrapeConfig {
             "quick" => Ok(Self::quick()),
             "network" => Ok(Self::network()),
             "paper" => Ok(Self::paper()),
-            _ => Self::study(name).ok_or_else(|| DrapeError::UnknownPreset {
-                name: name.to_owned(),
-                known: Self::PRESETS.join(", "),
-            }),
+            _ => {
+                let study = Self::studies().into_iter().find(|s| s.name == name);
+                study
+                    .map(|s| s.config)
+                    .ok_or_else(|| DrapeError::UnknownPreset {
+                        name: name.to_owned(),
+                        known: Self::PRESETS.join(", "),
+                    })
+            }
         }
     }
 
@@ -107,24 +116,21 @@ impl DrapeConfig {
     ///
     /// Where the paper is silent, the authors' program decides: Adam with a constant rate of 10⁻³; unsquared
     /// Chamfer with 0.2 of normal agreement; landmarks at 100, then 10, as a mean over coordinates; 0.1 of the skinny
-    /// penalty in both steps of an iteration; 3 000 samples a side, half by area and half by face, doubled every 100
+    /// penalty; 3 000 samples a side, half by area and half by face, doubled every 100
     /// iterations up to 10 000. Departures: the angles are those of the source, as the paper says, not of the initial
-    /// shape; no flip term; the samples are drawn anew in every iteration.
+    /// shape; no flip term; the samples are drawn anew in every iteration; the skinny penalty counts in the structural step
+    /// alone, where the authors' program adds it to both steps of an iteration.
     pub fn paper() -> Self {
         let first = Weights {
             chamfer: AUTHORS_SIDE,
             normal_agreement: 0.2,
             landmark: 100.0 * AUTHORS_SIDE * AUTHORS_SIDE,
-            corner_angle: 1.0,
-            area_kl: 1.0,
             triangle_quality: 0.1,
-            ..Weights::ZERO
+            ..Weights::ZERO.with_lambda(LAMBDA_PAPER[0])
         };
         let second = Weights {
             landmark: 10.0 * AUTHORS_SIDE * AUTHORS_SIDE,
-            corner_angle: 0.2,
-            area_kl: 0.2,
-            ..first
+            ..first.with_lambda(LAMBDA_PAPER[1])
         };
         let constant = |n_iterations, weights| Stage {
             n_iterations,
@@ -167,21 +173,17 @@ fn standard_stages(n_leading: usize, n_fitting: usize) -> Vec<Stage> {
         worst_distance: 0.1 * AUTHORS_SIDE,
         normal_agreement: 0.2,
         landmark: 10.0 * AUTHORS_SIDE * AUTHORS_SIDE,
-        corner_angle: 1.0,
-        area_kl: 1.0,
         triangle_quality: 0.3,
         flip: 1.0,
         fold_barrier: 5.0,
-        ..Weights::ZERO
+        ..Weights::ZERO.with_lambda(LAMBDA_STANDARD[0])
     };
     let fit = Weights {
         worst_distance: 0.2 * AUTHORS_SIDE,
         landmark: 5.0 * AUTHORS_SIDE * AUTHORS_SIDE,
-        corner_angle: 0.3,
-        area_kl: 0.3,
         flip: 0.0,
         drift: 15.0 * AUTHORS_SIDE * AUTHORS_SIDE,
-        ..start
+        ..start.with_lambda(LAMBDA_STANDARD[1])
     };
     let end = Weights {
         worst_distance: 2.4 * AUTHORS_SIDE,

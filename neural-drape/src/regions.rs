@@ -1,4 +1,4 @@
-//! Parts of the source that are not draped like the rest: free ones, rigid ones, and those the target lacks.
+//! Parts of the source that are not draped like the rest: free ones, rigid ones, and those the target does not cover.
 
 use mesh_core::{nearest_rotation, Positions, Triangulation, Vector3, VertexData, VertexId};
 use mesh_loss::{LocalShape, Matches, Overlap};
@@ -9,7 +9,7 @@ use nalgebra::Matrix3;
 
 use crate::{DrapeError, StateReader, StateWriter};
 
-/// A field that carries pieces has at most this many centres.
+/// The field that passive pieces follow has at most this many centres.
 const MAX_CENTRES: usize = 500;
 
 /// How each vertex of the source is treated.
@@ -50,7 +50,7 @@ impl Regions {
         }
         match self.attraction.iter().find(|a| !(0.0..=1.0).contains(*a)) {
             Some(&value) => Err(DrapeError::Setting {
-                name: "attraction",
+                name: "attraction".to_owned(),
                 value,
                 expected: "between 0 and 1",
             }),
@@ -71,9 +71,9 @@ pub(crate) struct Guidance {
     attraction: VertexData<f64>,
     bodies: Vec<Body>,
     /// Vertices of pieces that nothing attracts: they follow the space around them.
-    carried: Vec<VertexId>,
+    passive: Vec<VertexId>,
     /// All others.
-    led: Vec<VertexId>,
+    active: Vec<VertexId>,
     initial: Positions,
     is_trivial: bool,
     /// Weight of the pairs of each vertex since parts last followed the rest.
@@ -100,7 +100,7 @@ struct Body {
 }
 
 impl Guidance {
-    /// `is_uncovered` marks what the target lacks; it attracts nothing either.
+    /// `is_uncovered` marks what the target does not cover; it attracts nothing either.
     pub(crate) fn new(
         triangulation: &Triangulation,
         rest: &Positions,
@@ -127,35 +127,35 @@ impl Guidance {
             .map(|vertices| Body::new(vertices, rest, initial))
             .collect();
         let is_passive = |v: &VertexId| regions.attraction[*v] == 0.0 || regions.rigid[*v];
-        let is_faced = faced(triangulation, n);
-        let mut carried: Vec<VertexId> = triangulation
-            .connected_groups(n, |v| is_faced[v])
+        let is_used = used(triangulation, n);
+        let mut passive: Vec<VertexId> = triangulation
+            .connected_groups(n, |v| is_used[v])
             .into_iter()
             .filter(|piece| piece.iter().all(is_passive))
             .flatten()
             .collect();
-        carried.sort_unstable();
-        let mut is_carried = VertexData::new(n, false);
-        carried.iter().for_each(|&v| is_carried[v] = true);
-        let led: Vec<VertexId> = initial
+        passive.sort_unstable();
+        let mut is_passive_piece = VertexData::new(n, false);
+        passive.iter().for_each(|&v| is_passive_piece[v] = true);
+        let active: Vec<VertexId> = initial
             .ids()
-            .filter(|&v| is_faced[v] && !is_carried[v])
+            .filter(|&v| is_used[v] && !is_passive_piece[v])
             .collect();
-        if led.is_empty() {
-            carried.clear();
+        if active.is_empty() {
+            passive.clear();
         }
         Self {
             is_trivial: attraction.iter().all(|&a| a == 1.0),
             attraction,
             bodies,
-            carried,
-            led,
+            passive,
+            active,
             initial: initial.clone(),
             pairs: VertexData::new(n, 0.0),
         }
     }
 
-    /// How strongly target and vertex attract each other: 0 where the vertex is free or the target lacks it.
+    /// How strongly target and vertex attract each other: 0 where the vertex is free or the target does not cover it.
     pub(crate) fn attraction(&self) -> &VertexData<f64> {
         &self.attraction
     }
@@ -185,7 +185,7 @@ impl Guidance {
         })
     }
 
-    /// What each vertex of a body, a carried piece or a hole must move by to be where it belongs; none where nothing
+    /// What each vertex of a body, a passive piece or a hole must move by to be where it belongs; none where nothing
     /// must. In holes, the vertices of `held` stay, and what is near them.
     pub(crate) fn correction(
         &mut self,
@@ -194,28 +194,32 @@ impl Guidance {
         follow: Follow,
         held: &[VertexId],
     ) -> Result<Option<VertexData<Vector3>>, DrapeError> {
-        let mut loose = match follow {
+        let mut unmatched = match follow {
             Follow::All | Follow::End => self.without_pairs(triangulation, x),
             Follow::Bodies | Follow::Pieces => Vec::new(),
         };
-        let carries = follow != Follow::Bodies && !self.carried.is_empty();
-        if self.bodies.is_empty() && !carries && loose.is_empty() {
+        let moves_passive = follow != Follow::Bodies && !self.passive.is_empty();
+        if self.bodies.is_empty() && !moves_passive && unmatched.is_empty() {
             return Ok(None);
         }
         let mut moved = x.clone();
         if follow == Follow::End {
             let is_far = |v: &VertexId| held.iter().all(|&h| (x[*v] - x[h]).norm() > HELD_AROUND);
-            loose.retain(is_far);
+            unmatched.retain(is_far);
             let shape = LocalShape::new(triangulation, &self.initial);
-            (0..N_RELAXATIONS).for_each(|_| shape.relax(&mut moved, &loose));
+            (0..N_RELAXATIONS).for_each(|_| shape.relax(&mut moved, &unmatched));
         } else {
-            self.follow(triangulation, &loose, &mut moved);
+            self.follow(triangulation, &unmatched, &mut moved);
         }
-        if carries {
-            let points: Vec<_> = self.led.iter().map(|&v| self.initial[v]).collect();
-            let moves: Vec<_> = self.led.iter().map(|&v| x[v] - self.initial[v]).collect();
+        if moves_passive {
+            let points: Vec<_> = self.active.iter().map(|&v| self.initial[v]).collect();
+            let moves: Vec<_> = self
+                .active
+                .iter()
+                .map(|&v| x[v] - self.initial[v])
+                .collect();
             let field = SpaceExtension::new(&points, &moves, MAX_CENTRES)?;
-            for &v in &self.carried {
+            for &v in &self.passive {
                 moved[v] = self.initial[v] + field.displacement_at(&self.initial[v]);
             }
         }
@@ -238,30 +242,30 @@ impl Guidance {
         if total <= 0.0 {
             return Vec::new();
         }
-        let paired = self.led.iter().filter(|&&v| pairs[v] > 0.0);
+        let paired = self.active.iter().filter(|&&v| pairs[v] > 0.0);
         let density = total / paired.map(|&v| area[v]).sum::<f64>().max(f64::MIN_POSITIVE);
-        let mut is_loose = VertexData::new(x.len(), false);
-        for &v in &self.led {
-            is_loose[v] = area[v] > 0.0 && pairs[v] < FEW_PAIRS * density * area[v];
+        let mut is_unmatched = VertexData::new(x.len(), false);
+        for &v in &self.active {
+            is_unmatched[v] = area[v] > 0.0 && pairs[v] < FEW_PAIRS * density * area[v];
         }
-        let is_rim = rim(triangulation, x.len());
+        let is_boundary = boundary(triangulation, x.len());
         triangulation
-            .connected_groups(x.len(), |v| is_loose[v])
+            .connected_groups(x.len(), |v| is_unmatched[v])
             .into_iter()
-            .filter(|part| !part.iter().any(|&v| is_rim[v]))
+            .filter(|part| !part.iter().any(|&v| is_boundary[v]))
             .flatten()
             .collect()
     }
 
-    /// Moves the vertices of `loose` by the smoothest displacement from the initial shape that the others allow; not at
+    /// Moves the vertices of `unmatched` by the smoothest displacement from the initial shape that the others allow; not at
     /// all where that is not determined.
-    fn follow(&self, triangulation: &Triangulation, loose: &[VertexId], x: &mut Positions) {
-        if loose.is_empty() || loose.len() >= self.led.len() {
+    fn follow(&self, triangulation: &Triangulation, unmatched: &[VertexId], x: &mut Positions) {
+        if unmatched.is_empty() || unmatched.len() >= self.active.len() {
             return;
         }
-        let mut is_loose = VertexData::new(x.len(), false);
-        loose.iter().for_each(|&v| is_loose[v] = true);
-        let held: Vec<VertexId> = x.ids().filter(|&v| !is_loose[v]).collect();
+        let mut is_unmatched = VertexData::new(x.len(), false);
+        unmatched.iter().for_each(|&v| is_unmatched[v] = true);
+        let held: Vec<VertexId> = x.ids().filter(|&v| !is_unmatched[v]).collect();
         let mass = voronoi_mass(triangulation, &self.initial);
         let energy = bilaplacian(&cotan_laplacian(triangulation, &self.initial), &mass);
         let Ok(solve) = FixedSolve::new(&energy, &held) else {
@@ -269,7 +273,7 @@ impl Guidance {
         };
         let mut moves: Vec<Vector3> = x.iter().zip(&self.initial).map(|(a, b)| a - b).collect();
         solve.solve_in_place(&mut moves, &mut FixedSolveScratch::default());
-        for &v in loose {
+        for &v in unmatched {
             x[v] = self.initial[v] + moves[v.index()];
         }
     }
@@ -321,8 +325,8 @@ fn turn(from: &[Vector3], to: &[Vector3]) -> Matrix3<f64> {
 }
 
 /// Which vertices lie on an open boundary.
-fn rim(triangulation: &Triangulation, n: usize) -> VertexData<bool> {
-    let mut is_rim = VertexData::new(n, false);
+fn boundary(triangulation: &Triangulation, n: usize) -> VertexData<bool> {
+    let mut is_boundary = VertexData::new(n, false);
     let inner: Vec<_> = triangulation
         .interior_edges()
         .iter()
@@ -330,10 +334,10 @@ fn rim(triangulation: &Triangulation, n: usize) -> VertexData<bool> {
         .collect();
     for edge in triangulation.edges() {
         if inner.binary_search(&edge).is_err() {
-            edge.into_iter().for_each(|v| is_rim[v] = true);
+            edge.into_iter().for_each(|v| is_boundary[v] = true);
         }
     }
-    is_rim
+    is_boundary
 }
 
 /// A third of the area of the triangles at each vertex.
@@ -348,10 +352,10 @@ fn vertex_areas(triangulation: &Triangulation, x: &Positions) -> VertexData<f64>
 }
 
 /// Which vertices have a triangle.
-fn faced(triangulation: &Triangulation, n: usize) -> VertexData<bool> {
-    let mut is_faced = VertexData::new(n, false);
+fn used(triangulation: &Triangulation, n: usize) -> VertexData<bool> {
+    let mut is_used = VertexData::new(n, false);
     for &v in triangulation.triangles().iter().flatten() {
-        is_faced[v] = true;
+        is_used[v] = true;
     }
-    is_faced
+    is_used
 }

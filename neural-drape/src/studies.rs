@@ -8,61 +8,65 @@ use crate::{
     AngleReference, Descent, DrapeConfig, OverlapMode, ParametrizationConfig, Stage, Weights,
 };
 
-/// What a study changes.
-type Change = fn(&mut DrapeConfig);
-
-/// Name, and what is different from the first.
-const STUDIES: [(&str, Change); 8] = [
-    ("study", |_| ()),
-    ("study-no-encoding", |c| set_encoding(c, |_| Encoding::None)),
-    ("study-static-encoding", |c| {
-        set_encoding(c, Encoding::Static);
-    }),
-    ("study-angles-only", |c| {
-        change_weights(c, |w| w.area_kl = 0.0);
-    }),
-    ("study-areas-only", |c| {
-        change_weights(c, |w| w.corner_angle = 0.0);
-    }),
-    ("study-affine-start", |_| ()),
-    ("study-lambda-1", |c| {
-        change_weights(c, |w| (w.corner_angle, w.area_kl) = (1.0, 1.0));
-    }),
-    ("study-lambda-0.2", |c| {
-        change_weights(c, |w| (w.corner_angle, w.area_kl) = (0.2, 0.2));
-    }),
-];
-
-impl DrapeConfig {
-    /// Names of the studies, all known to [`Self::named`].
-    pub fn studies() -> impl Iterator<Item = &'static str> {
-        STUDIES.iter().map(|(name, _)| *name)
-    }
-
-    /// The study of this name.
-    pub(crate) fn study(name: &str) -> Option<Self> {
-        let (_, change) = STUDIES.iter().find(|(known, _)| *known == name)?;
-        let mut config = base();
-        change(&mut config);
-        Some(config)
-    }
+/// A preset that differs from [`DrapeConfig::study`] in one thing.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Study {
+    /// What [`DrapeConfig::named`] knows it by.
+    pub name: &'static str,
+    /// Its settings.
+    pub config: DrapeConfig,
 }
 
-/// The paper's terms and λ schedule on the residual network.
-fn base() -> DrapeConfig {
-    let mut config = DrapeConfig::network();
-    config.descent = Descent::Combined;
-    config.angle_reference = AngleReference::Rest;
-    config.sampling.normal_bias = None;
-    config.sampling.n_hard = 0;
-    config.overlap = OverlapMode::Full;
-    config.skinny_threshold = 0.1;
-    config.repair = false;
-    config.stages = DrapeConfig::paper().stages;
-    for (stage, n) in config.stages.iter_mut().zip([400, 200]) {
-        stage.n_iterations = n;
+impl DrapeConfig {
+    /// The settings that every study changes one thing of: the paper's terms and λ schedule on the residual network.
+    pub fn study() -> Self {
+        let mut config = Self::network();
+        config.descent = Descent::Combined;
+        config.angle_reference = AngleReference::Rest;
+        config.sampling.normal_bias = None;
+        config.sampling.n_hard = 0;
+        config.overlap = OverlapMode::Full;
+        config.skinny_threshold = 0.1;
+        config.repair = false;
+        config.stages = Self::paper().stages;
+        for (stage, n) in config.stages.iter_mut().zip([400, 200]) {
+            stage.n_iterations = n;
+        }
+        config
     }
-    config
+
+    /// The studies: [`Self::study`] itself, then one thing changed at a time. All names are known to [`Self::named`].
+    ///
+    /// A study of another start than the standard one has the settings of [`Self::study`]: where a drape starts is part
+    /// of its input.
+    pub fn studies() -> Vec<Study> {
+        let encoding = |encode: fn(Frequencies) -> Encoding| {
+            let mut config = Self::study();
+            set_encoding(&mut config, encode);
+            config
+        };
+        let weights = |change: fn(&mut Weights)| {
+            let mut config = Self::study();
+            change_weights(&mut config, change);
+            config
+        };
+        let lambda = |lambda: f64| {
+            let mut config = Self::study();
+            change_weights(&mut config, |w| *w = w.with_lambda(lambda));
+            config
+        };
+        [
+            ("study", Self::study()),
+            ("study-no-encoding", encoding(|_| Encoding::None)),
+            ("study-static-encoding", encoding(Encoding::Static)),
+            ("study-angles-only", weights(|w| w.area_kl = 0.0)),
+            ("study-areas-only", weights(|w| w.corner_angle = 0.0)),
+            ("study-lambda-1", lambda(1.0)),
+            ("study-lambda-0.2", lambda(0.2)),
+        ]
+        .map(|(name, config)| Study { name, config })
+        .into()
+    }
 }
 
 fn change_weights(config: &mut DrapeConfig, change: impl Fn(&mut Weights)) {
@@ -91,17 +95,12 @@ mod tests {
 
     #[test]
     fn every_study_is_a_preset_and_differs_from_the_first() {
-        let first = DrapeConfig::named("study").unwrap();
-        for name in DrapeConfig::studies() {
-            let config = DrapeConfig::named(name).unwrap();
-            config.check().unwrap();
-            // The start of `study-affine-start` is chosen outside of these settings.
-            let is_same = config == first;
-            assert_eq!(
-                is_same,
-                ["study", "study-affine-start"].contains(&name),
-                "{name}"
-            );
+        let studies = DrapeConfig::studies();
+        for (row, study) in studies.iter().enumerate() {
+            study.config.check().unwrap();
+            assert_eq!(DrapeConfig::named(study.name).unwrap(), study.config);
+            let first = studies.iter().position(|s| s.config == study.config);
+            assert_eq!(first, Some(row), "{}", study.name);
         }
     }
 }

@@ -1,10 +1,11 @@
 //! `drape landmarks`: on small files, and on the real pairs where the data are present.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use mesh_core::{io, Aabb, Point3};
 use serde_json::{json, Value};
 
+use crate::data::pairs;
 use crate::support::{run, Workplace};
 
 #[test]
@@ -103,19 +104,6 @@ fn converted_landmarks_give_the_same_drape() {
         .drape("landmarks convert source.obj target.ply landmarks.json --to ids -o ids.txt")
         .well();
     assert_eq!(place.read("ids.txt").lines().count(), 6);
-}
-
-/// The folder of all pairs, or nothing where it is not on this machine.
-#[allow(clippy::print_stderr, reason = "a skipped test says so")]
-fn pairs() -> Option<PathBuf> {
-    let beside = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/data");
-    let data = std::env::var_os("DRAPE_DATA").map_or(beside, PathBuf::from);
-    let pairs = data.join("pairs");
-    if !pairs.is_dir() {
-        eprintln!("skipped: no {}; set DRAPE_DATA", pairs.display());
-        return None;
-    }
-    Some(pairs)
 }
 
 /// A pair of the data with landmarks that a test may spoil.

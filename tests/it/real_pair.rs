@@ -1,24 +1,10 @@
 //! A short drape of a real pair, where the data are present.
 
-use std::path::{Path, PathBuf};
-
 use mesh_core::{io, Point3, Vector3};
 use nalgebra::Rotation3;
 
+use crate::data::horse_wolf;
 use crate::support::{run, Workplace};
-
-/// The pairs, or nothing where they are not on this machine.
-#[allow(clippy::print_stderr, reason = "a skipped test says so")]
-fn data() -> Option<PathBuf> {
-    let beside = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/data");
-    let data = std::env::var_os("DRAPE_DATA").map_or(beside, PathBuf::from);
-    let pair = data.join("pairs/horse_wolf");
-    if pair.is_dir() {
-        return Some(pair);
-    }
-    eprintln!("skipped: no {}; set DRAPE_DATA", pair.display());
-    None
-}
 
 /// A folder with settings for a short run.
 fn workplace() -> Workplace {
@@ -32,7 +18,7 @@ fn workplace() -> Workplace {
 
 #[test]
 fn a_horse_becomes_a_wolf_and_keeps_its_file() {
-    let Some(pair) = data() else {
+    let Some(pair) = horse_wolf() else {
         return;
     };
     let place = workplace();
@@ -73,7 +59,7 @@ fn a_horse_becomes_a_wolf_and_keeps_its_file() {
 /// Both files turned, scaled and moved, each in its own way: the result is that of the files as they are.
 #[test]
 fn units_place_and_turn_of_the_files_do_not_matter() {
-    let Some(pair) = data() else {
+    let Some(pair) = horse_wolf() else {
         return;
     };
     let place = workplace();

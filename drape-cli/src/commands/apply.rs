@@ -7,8 +7,8 @@ use mesh_core::io;
 use mesh_core::Positions;
 use neural_drape::Warp;
 
+use crate::args::MorphArgs;
 use crate::output::{check_distinct, check_mesh, left_beside, say, warn};
-use crate::seams::MorphArgs;
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {

@@ -4,12 +4,11 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::{ensure, Context as _};
-use neural_drape::DrapeConfig;
+use mesh_draping::Preset;
 
 use super::evaluate::finish;
+use crate::args::{MorphArgs, SettingsArgs, WeldArgs};
 use crate::output::{check_distinct, check_mesh};
-use crate::seams::{MorphArgs, WeldArgs};
-use crate::settings::SettingsArgs;
 use crate::suite::{self, stem, Method, Pair, Pool, Task};
 
 #[derive(Debug, clap::Args)]
@@ -44,7 +43,7 @@ pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
         args.settings.preset.is_none() || args.settings.config.is_none(),
         "give --preset or --config; a config file may name its preset"
     );
-    args.settings.settings()?;
+    args.settings.preset()?;
     let tasks = tasks(args)?;
     let rows = suite::run(&tasks, &args.summary, &Pool::new(args.jobs)?)?;
     finish(&rows, &args.summary)
@@ -53,11 +52,7 @@ pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
 fn tasks(args: &Args) -> anyhow::Result<Vec<Task>> {
     let method = match (&args.settings.config, &args.settings.preset) {
         (Some(path), _) => Method::Config(path.clone()),
-        (None, preset) => Method::Preset(
-            preset
-                .clone()
-                .unwrap_or_else(|| DrapeConfig::PRESETS[0].to_owned()),
-        ),
+        (None, preset) => Method::Preset(preset.clone().unwrap_or_else(|| Preset::standard().name)),
     };
     let settings = &args.settings;
     let mut options = vec![

@@ -3,15 +3,13 @@
 use std::path::PathBuf;
 use std::process::ExitCode;
 
+use mesh_draping::Seams;
+
 use super::transfer;
+use crate::args::{MorphArgs, Morphing, PartArgs, SettingsArgs, ViewArgs, WeldArgs};
 use crate::demo;
-use crate::gallery::ViewArgs;
 use crate::output::say;
 use crate::profile::ProfileArgs;
-use crate::regions::RegionArgs;
-use crate::render::Up;
-use crate::seams::{MorphArgs, Morphing, Seams, WeldArgs};
-use crate::settings::SettingsArgs;
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
@@ -38,11 +36,8 @@ pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
         settings: args.settings.clone(),
         report: Some(name("report.html")),
         render: Some(name("draped.png")),
-        regions: RegionArgs::default(),
-        view: ViewArgs {
-            view: Vec::new(),
-            up: Up::Y,
-        },
+        parts: PartArgs::default(),
+        view: ViewArgs::none(),
         truth: Some(files.truth),
         warp: Some(name("draped.drape")),
         require: None,

@@ -2,16 +2,14 @@
 
 use std::path::PathBuf;
 use std::process::ExitCode;
-use std::sync::Arc;
 
-use crate::gallery::{Gallery, ViewArgs};
-use crate::initial::{deform, Start};
-use crate::input::{read_positions, Pair};
+use mesh_draping::initial_deformation;
+use mesh_render::{Gallery, Image, View};
+
+use crate::args::{read_truth, InitialArg, Inputs, MorphArgs, ViewArgs, WeldArgs};
 use crate::output::{check_distinct, check_mesh, check_writable, left_beside, say, warn};
-use crate::render::{Image, View};
-use crate::run::judge;
-use crate::seams::{MorphArgs, WeldArgs};
 use crate::usage::Stopwatch;
+use crate::words;
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
@@ -31,7 +29,7 @@ pub(crate) struct Args {
     morphs: MorphArgs,
     /// How the source is brought to its landmarks
     #[arg(long, value_name = "NAME", default_value = "standard")]
-    initial: Start,
+    initial: InitialArg,
     /// Mesh whose vertices are where those of the result belong, to judge by
     #[arg(long, value_name = "FILE")]
     truth: Option<PathBuf>,
@@ -55,28 +53,33 @@ pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
     if let Some(path) = &args.render {
         check_writable(path)?;
     }
-    let landmarks = args.landmarks.as_deref();
-    let mut pair = Pair::read(&args.source, &args.target, landmarks, args.weld.weld)?;
-    Arc::make_mut(&mut pair.file).set_morphs(args.morphs.morphs.into());
-    pair.file.check_writable(&args.output)?;
-    let truth = args
-        .truth
-        .as_deref()
-        .map(|path| read_positions(path, &pair.source))
+    let inputs = Inputs {
+        source: &args.source,
+        target: &args.target,
+        landmarks: args.landmarks.as_deref(),
+        seams: args.weld.weld,
+    };
+    let mut pair = inputs.read()?;
+    pair.source = pair.source.with_morphs(args.morphs.morphs.into());
+    let truth = args.truth.as_deref();
+    let truth = truth
+        .map(|path| read_truth(path, &pair.source))
         .transpose()?;
-    let mut warnings = pair.warnings();
-    warnings.extend(args.morphs.left_behind(&pair.file, &args.output));
-    warnings.extend(pair.file.lost_in(&args.output));
-    warnings.extend(left_beside(&pair.file, &args.output));
-    let initial = deform(&pair, args.initial)?;
-    warnings.extend(initial.assumed);
+    let mut warnings = words::about_inputs(&pair);
+    if let Some(file) = pair.source.file() {
+        file.check_writable(&args.output)?;
+        warnings.extend(args.morphs.left_behind(file, &args.output));
+        warnings.extend(file.lost_in(&args.output));
+        warnings.extend(left_beside(file, &args.output));
+    }
+    let initial = initial_deformation(&pair, args.initial.into())?;
+    warnings.extend(words::notes(&initial.notes));
     warn(&warnings);
     let positions = initial.positions;
-    let report = judge(&pair, &positions, truth.as_ref())?;
-    pair.file
-        .write(&args.output, &pair.source.spread(&positions))?;
+    let report = pair.judge(&positions, truth.as_ref())?;
+    pair.source.write(&args.output, &positions)?;
     if let Some(path) = &args.render {
-        let gallery = Gallery::new(&pair, &positions, args.view.up, PICTURE_SIZE);
+        let gallery = Gallery::new(&pair, &positions, args.view.up(), PICTURE_SIZE)?;
         let row = |view| {
             Image::row(&[
                 gallery.source(view),

@@ -4,16 +4,14 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use anyhow::Context as _;
-use drape_studio::Treatment;
 use mesh_core::io::{self, write_atomic};
+use mesh_draping::parts::inner_surfaces;
+use mesh_draping::{Seams, Source, Target, Treatment};
+use mesh_render::{color, draw, Axes, Image, Look, Model, Shot, View};
 
-use crate::gallery::ViewArgs;
-use crate::input::{read_target, Source};
+use crate::args::ViewArgs;
 use crate::inspection::Inspection;
 use crate::output::{check_writable, say};
-use crate::regions::hidden::inner_surfaces;
-use crate::render::{color, draw, Axes, Image, Look, Model, Shot, View};
-use crate::seams::Seams;
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
@@ -50,8 +48,7 @@ pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let inspection = Inspection::of(&file).with_context(|| args.file.display().to_string())?;
     let inner = match &args.hidden {
         Some(_) => {
-            let source = Source::new(file.soup().clone(), Seams::EXACT)
-                .with_context(|| args.file.display().to_string())?;
+            let source = Source::of_file(file.clone(), Seams::EXACT)?;
             Some(proposals(&source))
         }
         None => None,
@@ -72,7 +69,7 @@ pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
     if let Some(path) = &args.render {
         let is_cloud = file.soup().faces.is_empty();
         let model = if is_cloud {
-            read_target(&args.file)?.model
+            Model::of_target(&Target::read(&args.file)?)?
         } else {
             Model::of_soup(file.soup())?
         };
@@ -80,7 +77,7 @@ pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
             .view
             .views_or(&[View::FRONT_QUARTER, View::BACK_QUARTER]);
         let shot = |view: &View| Shot {
-            axes: Axes::new(*view, args.view.up),
+            axes: Axes::new(*view, args.view.up()),
             size: PICTURE_SIZE,
         };
         let pictures = views
@@ -99,7 +96,7 @@ fn proposals(source: &Source) -> (String, String) {
         text += "no inner surface: rays from outside reach everything\n";
     }
     for (row, part) in inner.iter().enumerate() {
-        let middle = part.vertices.iter().map(|&v| source.rest[v].coords);
+        let middle = part.vertices.iter().map(|&v| source.rest()[v].coords);
         let middle = middle.sum::<mesh_core::Vector3>() / part.vertices.len() as f64;
         let how = match part.proposed() {
             Treatment::Rigid => "--rigid",
@@ -107,7 +104,7 @@ fn proposals(source: &Source) -> (String, String) {
         };
         let line = format!(
             "{}: {} vertices around ({:.4}, {:.4}, {:.4}), {:.1} % of the area; propose {how} hidden:{}",
-            part.kind(),
+            part.kind,
             part.vertices.len(),
             middle.x,
             middle.y,

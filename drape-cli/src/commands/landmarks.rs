@@ -7,16 +7,12 @@ use std::process::ExitCode;
 use anyhow::ensure;
 use clap::Subcommand;
 use mesh_core::io::write_atomic;
-use mesh_core::{Aabb, Landmark};
+use mesh_core::Landmark;
+use mesh_draping::landmarks::{self, leave_one_out_residuals, Finding, Form, Label};
+use mesh_draping::{Pair, Seams};
 
-use crate::input::Pair;
-use crate::landmarks::doctor;
-use crate::landmarks::label;
-use crate::landmarks::mirror::mirror;
-use crate::landmarks::suggest::suggest;
-use crate::landmarks::text::{write, Form, Places};
+use crate::args::Inputs;
 use crate::output::{check_distinct, check_writable, say, warn};
-use crate::seams::Seams;
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
@@ -67,17 +63,45 @@ struct Output {
     output: PathBuf,
     /// How to write it; where not given, the extension tells: json, else lines of source vertex, target x y z, name
     #[arg(long, value_name = "FORM")]
-    to: Option<Form>,
+    to: Option<FormArg>,
+}
+
+/// [`Form`] on the command line.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+enum FormArg {
+    /// JSON with names, places in faces and kinds: nothing is lost
+    Json,
+    /// JSON of two lists, source_vertices and target_points
+    Lists,
+    /// Lines of source vertex, target x y z, name
+    Text,
+    /// Lines of source vertex, target vertex, name
+    Ids,
+    /// Lines of source x y z, target x y z, name
+    Points,
+}
+
+impl From<FormArg> for Form {
+    fn from(arg: FormArg) -> Self {
+        match arg {
+            FormArg::Json => Self::Json,
+            FormArg::Lists => Self::Lists,
+            FormArg::Text => Self::Text,
+            FormArg::Ids => Self::Ids,
+            FormArg::Points => Self::Points,
+        }
+    }
 }
 
 impl Files {
     fn read(&self) -> anyhow::Result<Pair> {
-        Pair::read(
-            &self.source,
-            &self.target,
-            Some(&self.landmarks),
-            Seams::EXACT,
-        )
+        let inputs = Inputs {
+            source: &self.source,
+            target: &self.target,
+            landmarks: Some(&self.landmarks),
+            seams: Seams::EXACT,
+        };
+        inputs.read()
     }
 }
 
@@ -96,8 +120,9 @@ pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
 
 fn check(files: &Files) -> anyhow::Result<ExitCode> {
     let pair = files.read()?;
-    let residuals = doctor::left_out_residuals(&pair);
-    let findings = doctor::examine(&pair);
+    let residuals = leave_one_out_residuals(&pair);
+    let findings = pair.findings();
+    let findings: Vec<String> = findings.iter().map(Finding::to_string).collect();
     if files.json {
         let list: Vec<_> = pair
             .landmarks
@@ -116,7 +141,7 @@ fn check(files: &Files) -> anyhow::Result<ExitCode> {
                 text,
                 "{:>8.2}  {}",
                 100.0 * residual,
-                label(k, l.name.as_deref())
+                Label::new(k, l.name.as_deref())
             );
         }
         for finding in &findings {
@@ -132,7 +157,7 @@ fn check(files: &Files) -> anyhow::Result<ExitCode> {
 
 fn next(args: &Suggest) -> anyhow::Result<ExitCode> {
     let pair = args.files.read()?;
-    let suggestions = suggest(&pair, args.number)?;
+    let suggestions = landmarks::suggest(&pair, args.number)?;
     if args.files.json {
         let list: Vec<_> = suggestions
             .iter()
@@ -154,7 +179,7 @@ fn next(args: &Suggest) -> anyhow::Result<ExitCode> {
     }
     let mut text = String::new();
     for s in &suggestions {
-        let at = pair.source.rest[s.vertex];
+        let at = pair.source.rest()[s.vertex];
         let alone = if s.alone.is_finite() {
             format!(
                 "{:.0} % of the source's longest side from the nearest landmark",
@@ -184,7 +209,7 @@ fn next(args: &Suggest) -> anyhow::Result<ExitCode> {
 fn add_mirrored(args: &Output) -> anyhow::Result<ExitCode> {
     args.check()?;
     let pair = args.files.read()?;
-    let (added, plane) = mirror(&pair)?;
+    let landmarks::Mirrored { added, plane } = landmarks::mirror(&pair)?;
     let n = plane.normal;
     let mut text = format!(
         "mirrored across the plane through ({:.4}, {:.4}, {:.4}) with normal ({}, {}, {}); {} added\n",
@@ -218,23 +243,22 @@ impl Output {
             .output
             .extension()
             .is_some_and(|e| e.eq_ignore_ascii_case("json"));
-        self.to
-            .unwrap_or(if is_json { Form::Json } else { Form::Text })
+        match self.to {
+            Some(form) => form.into(),
+            None if is_json => Form::Json,
+            None => Form::Text,
+        }
     }
 
-    fn write(&self, pair: &Pair, landmarks: &[Landmark]) -> anyhow::Result<ExitCode> {
-        let places = Places {
-            source: &pair.source,
-            target: &pair.target.vertices,
-        };
-        let (text, moved) = write(landmarks, &places, self.form());
-        let side = Aabb::of(pair.source.rest.iter()).longest_side();
-        if moved > 1e-6 * side {
+    fn write(&self, pair: &Pair, list: &[Landmark]) -> anyhow::Result<ExitCode> {
+        let written = landmarks::write(list, &pair.source, &pair.target, self.form());
+        if written.moved > 1e-6 * pair.source.bounds().longest_side() {
             warn(&[format!(
-                "this form holds vertices only: places moved to the nearest one, by up to {moved:.4}"
+                "this form holds vertices only: places moved to the nearest one, by up to {:.4}",
+                written.moved
             )]);
         }
-        write_atomic(&self.output, text.as_bytes())?;
+        write_atomic(&self.output, written.text.as_bytes())?;
         say(&format!("wrote {}\n", self.output.display()))?;
         Ok(ExitCode::SUCCESS)
     }

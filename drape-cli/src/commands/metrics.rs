@@ -3,13 +3,11 @@
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use crate::gallery::{Gallery, ViewArgs, DISTANCE_AT_TOP};
-use crate::input::{read_positions, Pair};
+use mesh_render::{Gallery, Image, View, DISTANCE_AT_TOP};
+
+use crate::args::{read_truth, Inputs, ViewArgs, WeldArgs};
 use crate::output::{check_writable, say};
-use crate::render::{Image, View};
 use crate::requirement::Requirements;
-use crate::run::judge;
-use crate::seams::WeldArgs;
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
@@ -47,15 +45,19 @@ pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
     if let Some(path) = &args.render {
         check_writable(path)?;
     }
-    let landmarks = args.landmarks.as_deref();
-    let pair = Pair::read(&args.source, &args.target, landmarks, args.weld.weld)?;
-    let draped = read_positions(&args.result, &pair.source)?;
-    let truth = args
-        .truth
-        .as_deref()
-        .map(|path| read_positions(path, &pair.source))
+    let inputs = Inputs {
+        source: &args.source,
+        target: &args.target,
+        landmarks: args.landmarks.as_deref(),
+        seams: args.weld.weld,
+    };
+    let pair = inputs.read()?;
+    let draped = read_truth(&args.result, &pair.source)?;
+    let truth = args.truth.as_deref();
+    let truth = truth
+        .map(|path| read_truth(path, &pair.source))
         .transpose()?;
-    let report = judge(&pair, &draped, truth.as_ref())?;
+    let report = pair.judge(&draped, truth.as_ref())?;
     if args.json {
         let figures = report
             .figures()
@@ -67,7 +69,7 @@ pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
         say(&report.to_string())?;
     }
     if let Some(path) = &args.render {
-        let gallery = Gallery::new(&pair, &draped, args.view.up, PICTURE_SIZE);
+        let gallery = Gallery::new(&pair, &draped, args.view.up(), PICTURE_SIZE)?;
         let row = |view| {
             Image::row(&[
                 gallery.target(view),

@@ -2,10 +2,9 @@
 
 use std::process::ExitCode;
 
-use neural_drape::DrapeConfig;
+use mesh_draping::Preset;
 
 use crate::output::say;
-use crate::settings::{to_toml, SettingsArgs};
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
@@ -16,21 +15,11 @@ pub(crate) struct Args {
 pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
     match &args.name {
         None => {
-            let names = DrapeConfig::PRESETS
-                .into_iter()
-                .chain(DrapeConfig::studies());
-            say(&names.map(|name| format!("{name}\n")).collect::<String>())?;
+            let studies = Preset::studies().into_iter().map(|study| study.name);
+            let names = Preset::names().map(str::to_owned).chain(studies);
+            say(&names.map(|name| name + "\n").collect::<String>())?;
         }
-        Some(name) => {
-            let settings = SettingsArgs {
-                preset: Some(name.clone()),
-                config: None,
-                initial: None,
-                seed: None,
-                overlap: None,
-            };
-            say(&to_toml(&settings.settings()?)?)?;
-        }
+        Some(name) => say(&Preset::named(name)?.to_toml())?,
     }
     Ok(ExitCode::SUCCESS)
 }

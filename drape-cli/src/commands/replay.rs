@@ -1,11 +1,10 @@
 //! `drape replay`
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use crate::output::{check_distinct, check_mesh, check_writable, say};
 use crate::progress::Progress;
-use crate::toolbox::CommandLine;
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
@@ -27,18 +26,24 @@ pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
         check_distinct(path, &[&args.session])?;
     }
     let mut progress = None;
-    let replayed = drape_studio::replay(&args.session, &CommandLine::default(), |step| {
+    let replayed = drape_studio::replay(&args.session, |step| {
         progress
             .get_or_insert_with(|| Progress::start(step.n_iterations))
             .show(step);
     })?;
-    drop(progress.map(Progress::finish));
-    let (file, target) = (&replayed.scene.source.file, &replayed.scene.target.path);
-    for path in outputs.into_iter().flatten() {
-        check_distinct(path, &[file.path(), target])?;
+    if let Some(progress) = progress {
+        progress.finish();
     }
-    let positions = replayed.scene.source.spread(&replayed.draped);
-    file.write(&args.output, &positions)?;
+    let pair = &replayed.pair;
+    let inputs = [
+        pair.source.file().map(|file| file.path()),
+        pair.target.path(),
+    ];
+    let inputs: Vec<&Path> = inputs.into_iter().flatten().collect();
+    for path in outputs.into_iter().flatten() {
+        check_distinct(path, &inputs)?;
+    }
+    pair.source.write(&args.output, &replayed.draped)?;
     if let Some(path) = &args.warp {
         replayed.warp()?.save(path)?;
     }

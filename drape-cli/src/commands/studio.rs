@@ -3,14 +3,12 @@
 use std::env;
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode, Stdio};
-use std::sync::Arc;
 
 use anyhow::Context as _;
 use drape_studio::{Options, Studio};
 
+use crate::args::SettingsArgs;
 use crate::output::say;
-use crate::settings::{to_toml, SettingsArgs};
-use crate::toolbox::CommandLine;
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
@@ -47,16 +45,16 @@ pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
         source: args.source.clone(),
         target: args.target.clone(),
         landmarks: args.landmarks.clone(),
-        settings: args
+        preset: args
             .settings
             .is_given()
-            .then(|| to_toml(&args.settings.settings()?))
+            .then(|| args.settings.preset())
             .transpose()?,
         session,
         is_fresh: args.fresh,
         port: args.port,
     };
-    let studio = Studio::open(&options, Arc::new(CommandLine::default()))?;
+    let studio = Studio::open(&options)?;
     say(&format!(
         "studio at {}\nsession kept in {}\nCtrl-C ends it; the same command comes back to it\n",
         studio.url(),

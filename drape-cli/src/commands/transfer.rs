@@ -3,23 +3,19 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use std::sync::Arc;
 
 use mesh_core::io::write_atomic;
 use mesh_core::Positions;
+use mesh_draping::{Outcome, Stages, Transfer};
+use mesh_render::{Gallery, Image, Page, View, DISTANCE_AT_TOP};
 
-use crate::gallery::{Gallery, ViewArgs, DISTANCE_AT_TOP};
-use crate::input::{read_positions, Pair};
+use crate::args::{read_truth, Inputs, MorphArgs, PartArgs, SettingsArgs, ViewArgs, WeldArgs};
 use crate::output::{check_distinct, check_mesh, check_writable, left_beside, say, warn};
-use crate::profile::{ProfileArgs, Stages};
-use crate::regions::RegionArgs;
-use crate::render::{Image, View};
-use crate::report::Page;
+use crate::profile::{self, ProfileArgs};
+use crate::progress::Progress;
 use crate::requirement::Requirements;
-use crate::run::Run;
-use crate::seams::{MorphArgs, WeldArgs};
-use crate::settings::SettingsArgs;
-use crate::usage::Stopwatch;
+use crate::usage::{Stopwatch, Usage};
+use crate::words;
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
@@ -40,7 +36,7 @@ pub(crate) struct Args {
     #[command(flatten)]
     pub(super) settings: SettingsArgs,
     #[command(flatten)]
-    pub(super) regions: RegionArgs,
+    pub(super) parts: PartArgs,
     /// Write a page with pictures, figures, curves and settings
     #[arg(long, value_name = "HTML")]
     pub(super) report: Option<PathBuf>,
@@ -72,52 +68,69 @@ const PNG_PICTURE: usize = 420;
 
 pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let watch = Stopwatch::start();
-    let mut stages = Stages::new(&args.profile);
+    let mut stages = args.profile.stages();
     check_outputs(args)?;
-    let settings = args.settings.settings()?;
-    let landmarks = args.landmarks.as_deref();
-    let mut pair = stages.time("reading", || {
-        Pair::read(&args.source, &args.target, landmarks, args.weld.weld)
-    })?;
-    Arc::make_mut(&mut pair.file).set_morphs(args.morphs.morphs.into());
-    pair.file.check_writable(&args.output)?;
-    let truth = args
-        .truth
-        .as_deref()
-        .map(|path| read_positions(path, &pair.source))
+    let preset = args.settings.preset()?;
+    let inputs = Inputs {
+        source: &args.source,
+        target: &args.target,
+        landmarks: args.landmarks.as_deref(),
+        seams: args.weld.weld,
+    };
+    let mut pair = stages.time("reading", || inputs.read())?;
+    pair.source = pair.source.with_morphs(args.morphs.morphs.into());
+    let truth = args.truth.as_deref();
+    let truth = truth
+        .map(|path| read_truth(path, &pair.source))
         .transpose()?;
-
-    let mut warnings = pair.warnings();
-    warnings.extend(args.morphs.left_behind(&pair.file, &args.output));
-    let chosen = args.regions.resolve(&pair)?;
-    warnings.extend(chosen.notes);
-    warnings.extend(pair.file.lost_in(&args.output));
-    warnings.extend(left_beside(&pair.file, &args.output));
+    let mut warnings = words::about_inputs(&pair);
+    if let Some(file) = pair.source.file() {
+        file.check_writable(&args.output)?;
+        warnings.extend(args.morphs.left_behind(file, &args.output));
+        warnings.extend(file.lost_in(&args.output));
+        warnings.extend(left_beside(file, &args.output));
+    }
+    let parts = args.parts.resolve(&pair)?;
+    warnings.extend(words::notes(&parts.notes));
     warn(&warnings);
-    let run = Run::new(
-        &pair,
-        settings,
-        &chosen.regions,
-        truth.as_ref(),
-        &watch,
-        &mut stages,
-    )?;
-    warn(&run.notes);
-    warnings.extend(run.notes.iter().cloned());
+
+    let mut transfer = Transfer::of_pair(pair, preset)
+        .with_regions(parts.regions)
+        .with_stages(stages);
+    if let Some(truth) = truth.clone() {
+        transfer = transfer.with_truth(truth);
+    }
+    let mut outcome = drape(transfer)?;
+    let notes: Vec<String> = words::notes(&outcome.notes).collect();
+    warn(&notes);
+    warnings.extend(notes);
+    let mut stages = std::mem::take(&mut outcome.stages);
     let done = Done {
         args,
-        pair,
         truth,
         warnings,
-        run,
+        usage: watch.read(),
+        seconds: profile::seconds(&stages),
+        outcome,
     };
     stages.time("writing", || done.write())?;
     done.tell(&watch, &stages)?;
-    let figures = done.run.figures();
+    let figures = done.figures();
     Ok(args
         .require
         .as_ref()
         .map_or(ExitCode::SUCCESS, |r| r.verdict(&figures)))
+}
+
+/// Drapes and shows it.
+fn drape(transfer: Transfer) -> anyhow::Result<Outcome> {
+    let mut draping = transfer.start()?;
+    let mut progress = Progress::start(draping.n_iterations());
+    while let Some(step) = draping.step()? {
+        progress.show(&step);
+    }
+    progress.finish();
+    Ok(draping.finish()?)
 }
 
 fn check_outputs(args: &Args) -> anyhow::Result<()> {
@@ -148,24 +161,23 @@ fn check_outputs(args: &Args) -> anyhow::Result<()> {
 /// A finished run and what it was asked for.
 struct Done<'a> {
     args: &'a Args,
-    pair: Pair,
     truth: Option<Positions>,
     warnings: Vec<String>,
-    run: Run,
+    outcome: Outcome,
+    usage: Usage,
+    /// Seconds of each stage.
+    seconds: Vec<(&'static str, f64)>,
 }
 
 impl Done<'_> {
     fn write(&self) -> anyhow::Result<()> {
-        let Self {
-            args, pair, run, ..
-        } = self;
-        let draped = pair.source.spread(&run.draped);
-        pair.file.write(&args.output, &draped)?;
+        let Self { args, outcome, .. } = self;
+        outcome.write(&args.output)?;
         if let Some(path) = &args.warp {
-            run.warp(pair)?.save(path)?;
+            outcome.warp()?.save(path)?;
         }
         if let Some(path) = &args.render {
-            self.picture().save(path)?;
+            self.picture()?.save(path)?;
         }
         if let Some(path) = &args.report {
             write_atomic(path, self.page()?.as_bytes())?;
@@ -173,10 +185,22 @@ impl Done<'_> {
         Ok(())
     }
 
+    fn gallery(&self, size: usize) -> anyhow::Result<Gallery<'_>> {
+        let (pair, initial) = (&self.outcome.pair, &self.outcome.initial);
+        Ok(Gallery::new(pair, initial, self.args.view.up(), size)?)
+    }
+
+    /// All figures by name: of the result, of time and memory.
+    fn figures(&self) -> Vec<(&'static str, f64)> {
+        let mut figures = self.outcome.report.figures();
+        figures.extend(self.usage.figures());
+        figures
+    }
+
     /// Source, target, initial deformation, result and distances, a row for each view.
-    fn picture(&self) -> Image {
-        let Self { args, run, .. } = self;
-        let gallery = Gallery::new(&self.pair, &run.initial, args.view.up, PNG_PICTURE);
+    fn picture(&self) -> anyhow::Result<Image> {
+        let (args, run) = (self.args, &self.outcome);
+        let gallery = self.gallery(PNG_PICTURE)?;
         let distances = &run.report.vertex_distances;
         let marks = run.explanation.marks();
         let row = |view| {
@@ -189,22 +213,29 @@ impl Done<'_> {
             ])
         };
         let views = args.view.views_or(&[View::FRONT_QUARTER]);
-        Image::column(&views.into_iter().map(row).collect::<Vec<_>>())
+        Ok(Image::column(
+            &views.into_iter().map(row).collect::<Vec<_>>(),
+        ))
     }
 
     fn page(&self) -> anyhow::Result<String> {
-        let Self { args, run, .. } = self;
+        let args = self.args;
+        let times = self.seconds.iter();
+        let times = times.map(|(name, s)| ((*name).to_owned(), format!("{s:.2} s")));
+        let all = ("all".to_owned(), self.usage.to_string());
         let page = Page {
             title: &format!("{} draped over {}", name(&args.source), name(&args.target)),
-            run,
-            gallery: &Gallery::new(&self.pair, &run.initial, args.view.up, REPORT_PICTURE),
+            outcome: &self.outcome,
+            gallery: &self.gallery(REPORT_PICTURE)?,
             views: &args
                 .view
                 .views_or(&[View::FRONT_QUARTER, View::BACK_QUARTER]),
             warnings: &self.warnings,
+            seconds: Some(self.usage.wall_seconds),
+            times: &times.chain([all]).collect::<Vec<_>>(),
             truth: self.truth.as_ref(),
         };
-        page.to_html()
+        Ok(page.to_html()?)
     }
 
     /// Prints the figures, and where the time went if that was asked for.
@@ -213,19 +244,19 @@ impl Done<'_> {
         if self.args.json {
             let mut json = self.json();
             if is_profiled {
-                json["profile"] = stages.json();
+                json["profile"] = profile::json(stages);
             }
             return Ok(say(&format!("{json:#}\n"))?);
         }
         say(&self.text())?;
         if is_profiled {
-            say(&stages.table(&watch.read()))?;
+            say(&profile::table(stages, &watch.read()))?;
         }
         Ok(())
     }
 
     fn text(&self) -> String {
-        let Self { args, run, .. } = self;
+        let (args, run) = (self.args, &self.outcome);
         let outputs = [
             Some(&args.output),
             args.warp.as_ref(),
@@ -234,33 +265,33 @@ impl Done<'_> {
         ];
         let wrote = |path: &PathBuf| format!("wrote {}\n", path.display());
         let written: String = outputs.into_iter().flatten().map(wrote).collect();
-        let (settings, usage) = (&run.settings, &run.usage);
-        let seed = settings.config.seed;
-        let seams = self.pair.source.seams_in_words();
+        let seams = words::seams(&run.pair.source);
         let seams = seams.map_or_else(String::new, |words| format!("{words}\n"));
         format!(
-            "{}{}\n{seams}preset {}, seed {seed}: {usage}\n{written}",
+            "{}{}\n{seams}preset {}, seed {}: {}\n{written}",
             run.report,
-            run.explanation.text(),
-            settings.preset
+            words::explanation(&run.explanation),
+            run.preset.name,
+            run.preset.drape.seed,
+            self.usage
         )
     }
 
     fn json(&self) -> serde_json::Value {
-        let Self { args, run, .. } = self;
+        let (args, run) = (self.args, &self.outcome);
         serde_json::json!({
             "source": args.source,
             "target": args.target,
             "landmarks": args.landmarks,
             "output": args.output,
-            "preset": run.settings.preset,
-            "initial": run.settings.start,
-            "settings": run.settings.config,
-            "figures": run.figures().into_iter().collect::<BTreeMap<_, _>>(),
+            "preset": run.preset.name,
+            "initial": run.preset.initial,
+            "settings": run.preset.drape,
+            "figures": self.figures().into_iter().collect::<BTreeMap<_, _>>(),
             "report": run.report,
-            "explanation": run.explanation,
-            "usage": run.usage,
-            "stages": run.stages.iter().copied().collect::<BTreeMap<_, _>>(),
+            "explanation": words::explanation_json(&run.explanation),
+            "usage": self.usage,
+            "stages": self.seconds.iter().copied().collect::<BTreeMap<_, _>>(),
             "warnings": self.warnings,
         })
     }

@@ -1,10 +1,8 @@
 //! Two heads of one family: a direction from the middle names the same place on both.
 
+use mesh_core::sampling::SeededRng;
 use mesh_core::{shapes, Point3, PolygonSoup, Vector3};
 use nalgebra::Rotation3;
-use rand::seq::SliceRandom as _;
-use rand::SeedableRng as _;
-use rand_chacha::ChaCha8Rng;
 
 /// Quads along each side of the cube that the source is blown up from: 6 n² in all.
 pub(super) const QUADS_A_SIDE: usize = 16;
@@ -87,10 +85,10 @@ pub(super) fn target_net() -> (Vec<Vector3>, Vec<Vec<u32>>) {
         mut faces,
     } = shapes::icosphere(TARGET_SPLITS);
     let turn = Rotation3::from_euler_angles(0.4, 1.1, 0.3);
-    let mut rng = ChaCha8Rng::seed_from_u64(1);
+    let mut rng = SeededRng::new(1);
     let mut order: Vec<u32> = (0..positions.len() as u32).collect();
-    order.shuffle(&mut rng);
-    faces.shuffle(&mut rng);
+    rng.shuffle(&mut order);
+    rng.shuffle(&mut faces);
 
     let mut directions = vec![Vector3::zeros(); positions.len()];
     for (p, &row) in positions.iter().zip(&order) {

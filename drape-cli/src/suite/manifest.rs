@@ -19,7 +19,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{anyhow, ensure, Context as _};
 use mesh_core::io::Format;
-use neural_drape::DrapeConfig;
+use mesh_draping::Preset;
 use serde::Deserialize;
 
 use super::{Method, Pair, Task, INITIAL};
@@ -73,7 +73,7 @@ impl Manifest {
             )
         })?;
         let presets = if file.presets.is_empty() {
-            vec![DrapeConfig::PRESETS[0].to_owned()]
+            vec![Preset::standard().name]
         } else {
             file.presets
         };
@@ -151,7 +151,7 @@ fn method(preset: String, folder: &Path) -> anyhow::Result<Method> {
         return Ok(Method::Config(folder.join(preset)));
     }
     if preset != INITIAL {
-        DrapeConfig::named(&preset)?;
+        Preset::named(&preset)?;
     }
     Ok(Method::Preset(preset))
 }

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use super::row::Row;
-use crate::report::html::{escape, page, section};
+use mesh_render::html::{escape, page, section};
 
 /// A column of the page: figure, heading, factor, decimals.
 const COLUMNS: [(&str, &str, f64, usize); 9] = [

@@ -6,17 +6,21 @@ use anyhow::{bail, Context as _, Result};
 use axum::extract::{Path, State};
 use axum::http::{header, StatusCode};
 use axum::response::{IntoResponse, Response};
+use mesh_draping::landmarks::{write, Form};
+use mesh_draping::{initial_deformation, Outcome, Preset};
+use mesh_render::{Gallery, Page, Up, View};
 use tokio::sync::oneshot;
 use tokio::task::spawn_blocking;
 
 use super::App;
-use crate::course::Start;
-use crate::desk::{Inbox, Snapshot};
-use crate::hub::Frame;
+use crate::broadcast::ShownShape;
+use crate::controller::{Inbox, Snapshot, OPEN_FIRST};
 use crate::replay::Replayed;
-use crate::session::{landmarks, RunLog};
-use crate::toolbox::Finished;
-use crate::{landmark_file, Scene};
+use crate::session::{landmarks, RunLog, Session};
+use crate::shapes::Shapes;
+
+/// Pixels along the side of a picture in the report.
+const REPORT_PICTURE: usize = 440;
 
 /// A file for the user.
 struct Download {
@@ -28,11 +32,11 @@ struct Download {
 /// The result, the warp, the landmarks, the report or the session.
 pub(super) async fn export(State(app): State<Arc<App>>, Path(what): Path<String>) -> Response {
     let (sender, answer) = oneshot::channel();
-    app.desk.send(Inbox::Snapshot(sender));
+    app.controller.send(Inbox::Snapshot(sender));
     let Ok(snapshot) = answer.await else {
         return StatusCode::SERVICE_UNAVAILABLE.into_response();
     };
-    let made = spawn_blocking(move || make(&app, &what, snapshot)).await;
+    let made = spawn_blocking(move || make(&what, snapshot)).await;
     match made {
         Ok(Ok(download)) => download.into_response(),
         Ok(Err(error)) => (StatusCode::CONFLICT, format!("{error:#}")).into_response(),
@@ -64,7 +68,7 @@ impl Download {
     }
 }
 
-fn make(app: &App, what: &str, snapshot: Snapshot) -> Result<Download> {
+fn make(what: &str, snapshot: Snapshot) -> Result<Download> {
     let download = |name: &str, kind, bytes| Download {
         name: name.to_owned(),
         kind,
@@ -80,74 +84,75 @@ fn make(app: &App, what: &str, snapshot: Snapshot) -> Result<Download> {
     }
     let work = Work::of(snapshot)?;
     match what {
-        "landmarks" => {
-            let text = landmark_file::write(&work.scene, &work.session.document.marks)?;
-            Ok(download(
-                "landmarks.json",
-                "application/json",
-                text.into_bytes(),
-            ))
-        }
+        "landmarks" => Ok(download(
+            "landmarks.json",
+            "application/json",
+            work.landmarks().into_bytes(),
+        )),
         "result" => work.result(),
         "warp" => Ok(download(
             "result.drape",
             "application/octet-stream",
-            work.warp(app)?,
+            work.replayed()?.warp()?.to_bytes(),
         )),
         "report" => Ok(download(
             "report.html",
             "text/html; charset=utf-8",
-            work.report(app)?,
+            report(work.replayed()?)?.into_bytes(),
         )),
         _ => bail!("there is no export '{what}'"),
     }
 }
 
-/// A scene with the shape that is shown.
+/// A source and a target with the shape that is shown.
 struct Work {
-    scene: Scene,
-    session: crate::session::Session,
-    shown: Option<Arc<Frame>>,
+    shapes: Shapes,
+    session: Session,
+    shown: Option<Arc<ShownShape>>,
 }
 
 impl Work {
     fn of(snapshot: Snapshot) -> Result<Self> {
-        let (source, target) = snapshot
-            .source
-            .zip(snapshot.target)
-            .context("open a source and a target first")?;
         Ok(Self {
-            scene: Scene { source, target },
+            shapes: snapshot.displayed.context(OPEN_FIRST)?.shapes,
             session: snapshot.session,
             shown: snapshot.shown,
         })
     }
 
-    fn shown(&self) -> Result<&Frame> {
+    fn shown(&self) -> Result<&ShownShape> {
         self.shown
             .as_deref()
             .context("there is no result yet; drape first")
     }
 
+    /// The landmarks that are complete.
+    fn landmarks(&self) -> String {
+        let (source, target) = (&self.shapes.source, &self.shapes.target);
+        let complete = landmarks(&self.session.document.marks);
+        write(&complete, source, target, Form::Json).text
+    }
+
     /// The shape that is shown and how it came about.
-    fn replayed(&self, app: &App) -> Result<Replayed> {
+    fn replayed(&self) -> Result<Replayed> {
         let (log, shown) = (self.log(), self.shown()?);
-        let start = Start::new(&self.scene, app.toolbox.as_ref(), &log)?;
+        let preset = Preset::from_toml(&log.settings)?;
+        let start = self.shapes.pair(landmarks(&log.landmarks));
         Ok(Replayed {
-            landmarks: landmarks(log.last_landmarks()),
-            settings: start.settings,
-            initial: start.initial,
+            initial: initial_deformation(&start, preset.initial)?.positions,
+            pair: self.shapes.pair(landmarks(log.last_landmarks())),
+            preset,
             draped: shown.positions.as_ref().clone(),
-            network: shown.made.as_ref().and_then(|made| made.network.clone()),
-            scene: self.scene.clone(),
+            network: shown.provenance.as_ref().and_then(|p| p.network.clone()),
         })
     }
 
     /// The source file with its vertices where they are shown.
     fn result(&self) -> Result<Download> {
-        let file = &self.scene.source.file;
+        let source = &self.shapes.source;
+        let file = source.file().context("the source has no file")?;
         let name = file.path().file_name().unwrap_or_default();
-        let positions = self.scene.source.spread(&self.shown()?.positions);
+        let positions = source.spread(&self.shown()?.positions);
         let bytes = file.to_bytes(file.path(), &positions)?;
         Ok(Download {
             name: format!("draped-{}", name.to_string_lossy()),
@@ -166,20 +171,24 @@ impl Work {
             iteration: 0,
         })
     }
+}
 
-    fn warp(&self, app: &App) -> Result<Vec<u8>> {
-        Ok(self.replayed(app)?.warp()?.to_bytes())
-    }
-
-    fn report(&self, app: &App) -> Result<Vec<u8>> {
-        let made = self.replayed(app)?;
-        let page = app.toolbox.report(Finished {
-            scene: &made.scene,
-            landmarks: &made.landmarks,
-            settings: &made.settings,
-            initial: &made.initial,
-            draped: &made.draped,
-        })?;
-        Ok(page.into_bytes())
-    }
+/// The report page of a result.
+fn report(made: Replayed) -> Result<String> {
+    let outcome = Outcome::of_shapes(made.pair, made.preset, made.initial, made.draped)?;
+    let findings = outcome.pair.findings();
+    let findings = findings.iter().map(ToString::to_string);
+    let left_out = outcome.pair.target.notes().iter().map(ToString::to_string);
+    let warnings: Vec<String> = findings.chain(left_out).collect();
+    let page = Page {
+        title: "A drape made in the studio",
+        outcome: &outcome,
+        gallery: &Gallery::new(&outcome.pair, &outcome.initial, Up::Y, REPORT_PICTURE)?,
+        views: &[View::FRONT_QUARTER, View::BACK_QUARTER],
+        warnings: &warnings,
+        seconds: None,
+        times: &[],
+        truth: None,
+    };
+    Ok(page.to_html()?)
 }

@@ -17,9 +17,8 @@ use axum::routing::{get, post};
 use axum::Router;
 use tokio::net::TcpListener;
 
-use crate::desk::DeskHandle;
-use crate::hub::Hub;
-use crate::Toolbox;
+use crate::broadcast::Broadcast;
+use crate::controller::ControllerHandle;
 pub(crate) use guard::Guard;
 
 /// Largest file that a page may send.
@@ -29,9 +28,8 @@ const MAX_SOCKETS: usize = 32;
 
 /// What every handler needs.
 pub(crate) struct App {
-    pub(crate) desk: DeskHandle,
-    pub(crate) hub: Arc<Hub>,
-    pub(crate) toolbox: Arc<dyn Toolbox>,
+    pub(crate) controller: ControllerHandle,
+    pub(crate) broadcast: Arc<Broadcast>,
     /// Folder of the files that pages send.
     pub(crate) uploads: PathBuf,
     pub(crate) sockets: tokio::sync::Semaphore,
@@ -39,15 +37,13 @@ pub(crate) struct App {
 
 impl App {
     pub(crate) fn new(
-        desk: DeskHandle,
-        hub: Arc<Hub>,
-        toolbox: Arc<dyn Toolbox>,
+        controller: ControllerHandle,
+        broadcast: Arc<Broadcast>,
         uploads: PathBuf,
     ) -> Self {
         Self {
-            desk,
-            hub,
-            toolbox,
+            controller,
+            broadcast,
             uploads,
             sockets: tokio::sync::Semaphore::new(MAX_SOCKETS),
         }
@@ -59,7 +55,7 @@ pub(crate) async fn serve(listener: TcpListener, guard: Guard, app: App) -> std:
     let app = Arc::new(app);
     let studio = Router::new()
         .route("/{file}", get(assets::file))
-        .route("/mesh/{side}", get(mesh))
+        .route("/mesh/{name}", get(mesh))
         .route("/open/{role}/{name}", post(open::open))
         .route("/export/{what}", get(export::export))
         .route("/ws", get(socket::upgrade))
@@ -76,15 +72,16 @@ pub(crate) async fn serve(listener: TcpListener, guard: Guard, app: App) -> std:
 }
 
 /// The buffers of a shape.
-async fn mesh(State(app): State<Arc<App>>, Path(side): Path<String>) -> Response {
+async fn mesh(State(app): State<Arc<App>>, Path(name): Path<String>) -> Response {
     let (sender, answer) = tokio::sync::oneshot::channel();
-    app.desk.send(crate::desk::Inbox::Snapshot(sender));
+    app.controller
+        .send(crate::controller::Inbox::Snapshot(sender));
     let Ok(snapshot) = answer.await else {
         return StatusCode::SERVICE_UNAVAILABLE.into_response();
     };
-    let bytes = match side.as_str() {
-        "source" => snapshot.source.map(|s| s.display.bytes.clone()),
-        "target" => snapshot.target.map(|t| t.display.bytes.clone()),
+    let bytes = match name.as_str() {
+        "source" => snapshot.source.map(|s| s.buffers.bytes.clone()),
+        "target" => snapshot.target.map(|t| t.buffers.bytes.clone()),
         _ => None,
     };
     match bytes {

@@ -10,13 +10,14 @@ use axum::extract::{Path, State};
 use axum::http::StatusCode;
 use axum::response::{IntoResponse, Response};
 use mesh_core::io::write_atomic;
+use mesh_draping::landmarks;
 use tokio::sync::oneshot;
 use tokio::task::spawn_blocking;
 
 use super::App;
-use crate::desk::{Inbox, Opened};
+use crate::controller::{Inbox, Opened, OPEN_FIRST};
+use crate::displayed::{DisplayedSource, DisplayedTarget};
 use crate::session::InputRecord;
-use crate::{Scene, Source, Target};
 
 /// Longest file name kept, in characters.
 const MAX_NAME: usize = 100;
@@ -32,7 +33,7 @@ pub(super) async fn open(
     let outcome = match read {
         Ok(Ok(opened)) => {
             let (sender, answer) = oneshot::channel();
-            app.desk.send(Inbox::Opened(opened, sender));
+            app.controller.send(Inbox::Opened(opened, sender));
             answer.await.unwrap_or(Ok(()))
         }
         Ok(Err(error)) => Err(format!("{error:#}")),
@@ -57,28 +58,20 @@ fn read(app: &App, role: &str, name: &str, bytes: &[u8]) -> Result<Opened> {
     };
     match role {
         "source" => {
-            let source = Source::read(&path).map_err(show)?;
+            let source = DisplayedSource::read(&path).map_err(show)?;
             Ok(Opened::Source(Arc::new(source), InputRecord::of(&path)?))
         }
         "target" => {
-            let target = Target::read(&path, app.toolbox.as_ref()).map_err(show)?;
+            let target = DisplayedTarget::read(&path).map_err(show)?;
             Ok(Opened::Target(Arc::new(target), InputRecord::of(&path)?))
         }
         "landmarks" => {
-            let scene = app
-                .hub
-                .scene()
-                .context("open a source and a target first")?;
-            Ok(Opened::Landmarks(
-                landmarks(app, &scene, &path).map_err(show)?,
-            ))
+            let shapes = app.broadcast.displayed().context(OPEN_FIRST)?.shapes;
+            let read = landmarks::read(&path, &shapes.source, &shapes.target);
+            Ok(Opened::Landmarks(read.map_err(|e| show(e.into()))?))
         }
         _ => bail!("a file is opened as source, target or landmarks"),
     }
-}
-
-fn landmarks(app: &App, scene: &Scene, path: &std::path::Path) -> Result<Vec<mesh_core::Landmark>> {
-    app.toolbox.read_landmarks(scene, path)
 }
 
 /// Writes the file into the folder of this session's files, under a name that cannot lead out of it.

@@ -13,9 +13,9 @@ use tokio::sync::{oneshot, watch};
 use tokio::task::spawn_blocking;
 
 use super::App;
-use crate::desk::{Inbox, Request};
+use crate::broadcast::ShownShape;
+use crate::controller::{Inbox, Request};
 use crate::figures::Heat;
-use crate::hub::Frame;
 
 /// Largest message that a page may send: a settings file.
 const MAX_MESSAGE: usize = 256 << 10;
@@ -56,7 +56,7 @@ struct Connection<'a> {
     state: watch::Receiver<Arc<str>>,
     progress: watch::Receiver<Arc<str>>,
     figures: watch::Receiver<Arc<str>>,
-    frame: watch::Receiver<Option<Arc<Frame>>>,
+    shown: watch::Receiver<Option<Arc<ShownShape>>>,
     /// The shape that the page has not drawn yet.
     undrawn: Option<u32>,
 }
@@ -65,16 +65,16 @@ struct Connection<'a> {
 enum Happened {
     Received(Option<Result<Message, axum::Error>>),
     Text(Arc<str>),
-    Frame(Option<Arc<Frame>>),
+    Shown(Option<Arc<ShownShape>>),
 }
 
 impl<'a> Connection<'a> {
     fn new(app: &'a App, socket: WebSocket) -> Self {
         let mut connection = Self {
-            state: app.hub.state.subscribe(),
-            progress: app.hub.progress.subscribe(),
-            figures: app.hub.figures.subscribe(),
-            frame: app.hub.frame.subscribe(),
+            state: app.broadcast.state.subscribe(),
+            progress: app.broadcast.progress.subscribe(),
+            figures: app.broadcast.figures.subscribe(),
+            shown: app.broadcast.shown.subscribe(),
             app,
             socket,
             undrawn: None,
@@ -82,7 +82,7 @@ impl<'a> Connection<'a> {
         connection.state.mark_changed();
         connection.progress.mark_changed();
         connection.figures.mark_changed();
-        connection.frame.mark_changed();
+        connection.shown.mark_changed();
         connection
     }
 
@@ -99,10 +99,10 @@ impl<'a> Connection<'a> {
                 Happened::Received(_) => false,
                 Happened::Text(text) if text.is_empty() => true,
                 Happened::Text(text) => self.send_text(&text).await,
-                Happened::Frame(None) => true,
-                Happened::Frame(Some(frame)) => {
-                    self.undrawn = Some(frame.serial);
-                    self.send_bytes(frame.message.clone()).await
+                Happened::Shown(None) => true,
+                Happened::Shown(Some(shown)) => {
+                    self.undrawn = Some(shown.serial);
+                    self.send_bytes(shown.message.clone()).await
                 }
             };
             if !sent {
@@ -117,7 +117,7 @@ impl<'a> Connection<'a> {
             state,
             progress,
             figures,
-            frame,
+            shown,
             undrawn,
             ..
         } = self;
@@ -127,8 +127,8 @@ impl<'a> Connection<'a> {
             Ok(()) = state.changed() => Happened::Text(state.borrow_and_update().clone()),
             Ok(()) = progress.changed() => Happened::Text(progress.borrow_and_update().clone()),
             Ok(()) = figures.changed() => Happened::Text(figures.borrow_and_update().clone()),
-            Ok(()) = frame.changed(), if undrawn.is_none() => {
-                Happened::Frame(frame.borrow_and_update().clone())
+            Ok(()) = shown.changed(), if undrawn.is_none() => {
+                Happened::Shown(shown.borrow_and_update().clone())
             }
             else => Happened::Received(None),
         }
@@ -158,11 +158,11 @@ impl<'a> Connection<'a> {
     }
 
     async fn send_heat(&mut self, heat: Heat) -> bool {
-        let shown = self.app.hub.frame.borrow().clone();
-        let Some((scene, frame)) = self.app.hub.scene().zip(shown) else {
+        let shown = self.app.broadcast.shown.borrow().clone();
+        let Some((displayed, shown)) = self.app.broadcast.displayed().zip(shown) else {
             return true;
         };
-        match spawn_blocking(move || heat.message(&scene, &frame)).await {
+        match spawn_blocking(move || heat.message(&displayed, &shown)).await {
             Ok(message) => self.send_bytes(message.into()).await,
             Err(_) => true,
         }
@@ -181,12 +181,12 @@ impl<'a> Connection<'a> {
     }
 }
 
-/// What the desk answers.
+/// What the controller answers.
 async fn ask(app: &App, request: Value) -> Result<Value, String> {
     let request: Request =
         serde_json::from_value(request).map_err(|error| format!("this is no request: {error}"))?;
     let (sender, answer) = oneshot::channel();
-    app.desk.send(Inbox::Request(request, sender));
+    app.controller.send(Inbox::Request(request, sender));
     answer
         .await
         .unwrap_or_else(|_| Err("the studio has ended".to_owned()))

@@ -139,7 +139,7 @@ fn is_finite(mark: &Mark) -> bool {
 mod tests {
     use super::super::{Event, MarkKind, RunLog, SourcePlace};
     use super::*;
-    use crate::Parts;
+    use mesh_draping::Parts;
 
     fn session() -> Session {
         let mut session = Session::new("preset = \"standard\"\n".to_owned());
@@ -157,6 +157,7 @@ mod tests {
             free: vec!["bag".to_owned()],
             rigid: Vec::new(),
             draped: vec!["hidden:2".to_owned()],
+            ..Parts::default()
         };
         session.edit(|d| {
             d.marks.push(mark.clone());

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::mark::Mark;
-use crate::Parts;
+use mesh_draping::Parts;
 
 /// A drape from its start to where it is.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

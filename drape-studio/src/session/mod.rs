@@ -10,7 +10,7 @@ pub(crate) use mark::{landmarks, Mark, MarkKind, SourcePlace};
 
 use serde::{Deserialize, Serialize};
 
-use crate::Parts;
+use mesh_draping::Parts;
 
 /// How many edits can be undone.
 const MAX_UNDO: usize = 200;

@@ -19,9 +19,9 @@ pub use stray::Strays;
 pub use surfels::SurfelCloud;
 pub use triangle_soup::TriangleSoup;
 
-use rand::RngCore;
 use rayon::prelude::*;
 
+use crate::sampling::SeededRng;
 use crate::{Aabb, Point3, UnitFrame, Vector3};
 
 /// A place on a target surface.
@@ -98,7 +98,7 @@ pub trait TargetSurface: Send + Sync {
     }
 
     /// `n` random places, uniform by area, or over the points of a cloud.
-    fn sample(&self, n: usize, rng: &mut dyn RngCore) -> Vec<SurfaceSample>;
+    fn sample(&self, n: usize, rng: &mut SeededRng) -> Vec<SurfaceSample>;
 
     /// The corners of the triangles, each once, or the points of the cloud: where samples never fall exactly.
     ///

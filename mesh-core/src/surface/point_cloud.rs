@@ -1,11 +1,10 @@
 //! Point cloud as a target.
 
-use rand::{Rng, RngCore};
-
 use super::denoise::{denoised, Denoised};
 use super::neighbourhood::{boundary, neighbourhoods, noise, strays};
 use super::{propagate, Location, NormalSign, SurfacePoint, SurfaceSample, TargetSurface};
 use crate::bvh::BoxTree;
+use crate::sampling::SeededRng;
 use crate::{Aabb, Point3, TopologyError, Vector3};
 
 /// A target made of points, with normals that are given or estimated.
@@ -131,9 +130,9 @@ impl TargetSurface for PointCloud {
         }
     }
 
-    fn sample(&self, n: usize, rng: &mut dyn RngCore) -> Vec<SurfaceSample> {
+    fn sample(&self, n: usize, rng: &mut SeededRng) -> Vec<SurfaceSample> {
         let mut sample = || {
-            let index = rng.random_range(0..self.points.len());
+            let index = rng.below(self.points.len());
             SurfaceSample {
                 point: self.points[index],
                 location: Location::Point {

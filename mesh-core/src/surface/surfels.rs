@@ -2,9 +2,8 @@
 
 use std::sync::Arc;
 
-use rand::{Rng, RngCore};
-
 use super::{Location, NormalSign, PointCloud, SurfacePoint, SurfaceSample, TargetSurface};
+use crate::sampling::SeededRng;
 use crate::{Aabb, Point3, Vector3};
 
 /// Radius of a disc as a share of the mean distance to the neighbours: so far a cloud's points stand for its surface.
@@ -87,14 +86,14 @@ impl TargetSurface for SurfelCloud {
         }
     }
 
-    fn sample(&self, n: usize, rng: &mut dyn RngCore) -> Vec<SurfaceSample> {
+    fn sample(&self, n: usize, rng: &mut SeededRng) -> Vec<SurfaceSample> {
         let total = self.cumulative.last().copied().unwrap_or(0.0);
         if total <= 0.0 {
             return self.cloud.sample(n, rng);
         }
         let points = self.cloud.points();
         let mut sample = || {
-            let at = rng.random::<f64>() * total;
+            let at = rng.uniform() * total;
             let row = self.cumulative.partition_point(|&c| c <= at);
             let index = row.min(points.len() - 1) as u32;
             SurfaceSample {
@@ -130,8 +129,6 @@ impl TargetSurface for SurfelCloud {
 mod tests {
     use super::*;
     use crate::shapes;
-    use rand::SeedableRng;
-    use rand_chacha::ChaCha8Rng;
 
     fn ball() -> SurfelCloud {
         let points = shapes::icosphere(4).positions;
@@ -158,7 +155,7 @@ mod tests {
         };
         let points: Vec<Point3> = grid(60, 0.0).chain(grid(20, 1.0)).collect();
         let cloud = SurfelCloud::new(Arc::new(PointCloud::new(points, None).unwrap()));
-        let samples = cloud.sample(4000, &mut ChaCha8Rng::seed_from_u64(1));
+        let samples = cloud.sample(4000, &mut SeededRng::new(1));
         let dense = samples.iter().filter(|s| s.point.x < 1.0).count();
         // Half of the area; by point it would be nine tenths. 0.5 ± 6 σ, and rims count a little more.
         assert!((1700..2300).contains(&dense), "{dense}");

@@ -1,6 +1,5 @@
 //! Triangle soup as a target: duplicates, degenerate triangles, holes, random orientation are all welcome.
 
-use rand::RngCore;
 use rayon::prelude::*;
 
 use super::boundary::Boundary;
@@ -9,7 +8,7 @@ use super::stray::Strays;
 use super::weld::Weld;
 use super::{Location, NormalSign, SurfacePoint, SurfaceSample, TargetSurface};
 use crate::measure::{triangle_area, triangle_normal};
-use crate::sampling::TriangleSampler;
+use crate::sampling::{SeededRng, TriangleSampler};
 use crate::{
     Aabb, Point3, PolygonSoup, TopologyError, TriangleBvh, TriangleFans, Triangulation, Vector3,
 };
@@ -135,7 +134,7 @@ impl TargetSurface for TriangleSoup {
         self.bvh.closest_points(queries)
     }
 
-    fn sample(&self, n: usize, rng: &mut dyn RngCore) -> Vec<SurfaceSample> {
+    fn sample(&self, n: usize, rng: &mut SeededRng) -> Vec<SurfaceSample> {
         let places = self.sampler.sample(n, rng).into_iter();
         places
             .map(|(row, barycentric)| {

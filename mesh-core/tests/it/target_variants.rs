@@ -2,9 +2,8 @@
 
 use std::path::PathBuf;
 
+use mesh_core::sampling::SeededRng;
 use mesh_core::{io, NormalSign, PointCloud, TargetSurface, TriangleSoup};
-use rand::SeedableRng;
-use rand_chacha::ChaCha8Rng;
 
 /// The folders of the pairs that have variants; none where the data is not there.
 #[allow(clippy::print_stderr, reason = "says that a test had nothing to do")]
@@ -22,7 +21,7 @@ fn pairs() -> Vec<PathBuf> {
 
 /// Share of random places of `target` whose normal is on the side that the whole surface says.
 fn share_on_right_side(target: &dyn TargetSurface, whole: &TriangleSoup) -> f64 {
-    let samples = target.sample(2000, &mut ChaCha8Rng::seed_from_u64(1));
+    let samples = target.sample(2000, &mut SeededRng::new(1));
     let is_right = |s: &&mesh_core::SurfaceSample| {
         let expected = whole.normal(&whole.closest_point(&s.point).location);
         let found = target.normal(&s.location);

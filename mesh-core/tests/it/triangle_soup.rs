@@ -1,16 +1,15 @@
 //! Triangle soups with every defect, as targets.
 
+use mesh_core::sampling::SeededRng;
 use mesh_core::{
     shapes, Location, NormalSign, Point3, PolygonSoup, TargetSurface, TopologyError, TriangleSoup,
     Vector3,
 };
 use nalgebra::Rotation3;
-use rand::{Rng, SeedableRng};
-use rand_chacha::ChaCha8Rng;
 
 /// The same faces, each with corners of its own, every one turned at random.
 fn shuffled(soup: &PolygonSoup, seed: u64) -> PolygonSoup {
-    let mut rng = ChaCha8Rng::seed_from_u64(seed);
+    let mut rng = SeededRng::new(seed);
     let mut apart = PolygonSoup::default();
     for face in &soup.faces {
         let from = apart.positions.len() as u32;
@@ -18,7 +17,7 @@ fn shuffled(soup: &PolygonSoup, seed: u64) -> PolygonSoup {
             .positions
             .extend(face.iter().map(|&v| soup.positions[v as usize]));
         let mut corners: Vec<u32> = (from..apart.positions.len() as u32).collect();
-        if rng.random() {
+        if rng.below(2) == 0 {
             corners.reverse();
         }
         apart.faces.push(corners);
@@ -28,7 +27,7 @@ fn shuffled(soup: &PolygonSoup, seed: u64) -> PolygonSoup {
 
 /// Share of random places whose normal points away from the origin.
 fn outward_share(target: &TriangleSoup) -> f64 {
-    let samples = target.sample(2000, &mut ChaCha8Rng::seed_from_u64(1));
+    let samples = target.sample(2000, &mut SeededRng::new(1));
     let is_outward = |s: &&mesh_core::SurfaceSample| {
         target
             .normal(&s.location)
@@ -77,7 +76,7 @@ fn faces_without_shared_corners_are_turned_by_what_they_see() {
 fn an_open_sheet_keeps_the_side_of_its_file() {
     let target = target(shapes::open_grid(4, 3));
     assert_eq!(target.normal_sign(), NormalSign::Oriented);
-    for sample in target.sample(50, &mut ChaCha8Rng::seed_from_u64(2)) {
+    for sample in target.sample(50, &mut SeededRng::new(2)) {
         assert!(target.normal(&sample.location).is_some_and(|n| n.z > 0.999));
     }
 }
@@ -166,7 +165,7 @@ fn a_target_without_triangles_is_an_error() {
 fn samples_are_uniform_by_area() {
     let target = target(shapes::cone(64));
     let n = 20_000;
-    let samples = target.sample(n, &mut ChaCha8Rng::seed_from_u64(11));
+    let samples = target.sample(n, &mut SeededRng::new(11));
     for h in [0.1, 0.3, 0.5, 0.8] {
         let expected = 1.0 - (1.0 - h) * (1.0 - h);
         let share = samples.iter().filter(|s| s.point.z < h).count() as f64 / n as f64;
@@ -239,8 +238,8 @@ fn cracks_and_single_missing_faces_are_no_boundary_and_holes_are() {
 #[test]
 fn normals_turn_with_the_shape() {
     // Loose triangles all over the place: no side of theirs is surely outside.
-    let mut rng = ChaCha8Rng::seed_from_u64(3);
-    let mut random = || Point3::from(Vector3::from_fn(|_, _| rng.random::<f64>()));
+    let mut rng = SeededRng::new(3);
+    let mut random = || Point3::from(Vector3::from_fn(|_, _| rng.uniform()));
     let loose = PolygonSoup {
         positions: (0..900).map(|_| random()).collect(),
         faces: (0..300)

@@ -1,9 +1,8 @@
 //! Two surfaces that are brought nearest to each other by closest-point iteration.
 
+use mesh_core::sampling::SeededRng;
 use mesh_core::{NormalSign, Positions, TriangleBvh, UnitFrame, Vector3};
 use nalgebra::{Matrix3, SymmetricEigen};
-use rand::SeedableRng;
-use rand_chacha::ChaCha8Rng;
 
 use super::side::{
     in_discs, sample_source, sample_target, Detail, Place, Side, Surface, LARGE, N_DISCS,
@@ -94,7 +93,7 @@ impl<'a> Scene<'a> {
         }
         let frames = bounds.map(UnitFrame::of);
         let unit: Positions = input.rest.map(|p| frames[0].to_unit(p));
-        let mut rng = ChaCha8Rng::seed_from_u64(input.seed);
+        let mut rng = SeededRng::new(input.seed);
         let source = sample_source(input.triangulation, &unit, N_FINE, &mut rng);
         let samples = sample_target(input.target, &frames[1], N_FINE, &mut rng);
         let in_units = |p: &PointPair| {

@@ -2,13 +2,11 @@
 
 use std::sync::Arc;
 
-use mesh_core::sampling::{TrianglePlace, TriangleSampler};
+use mesh_core::sampling::{SeededRng, TrianglePlace, TriangleSampler};
 use mesh_core::{
     PointCloud, Positions, SurfelCloud, TargetSurface, TriangleBvh, Triangulation, UnitFrame,
     Vector3,
 };
-use rand::seq::SliceRandom;
-use rand_chacha::ChaCha8Rng;
 
 /// Surfaces of more triangles, or target vertices, than this are searched as discs, ...
 pub(super) const LARGE: usize = 20_000;
@@ -84,7 +82,7 @@ pub(super) fn sample_source(
     triangulation: &Triangulation,
     x: &Positions,
     n: usize,
-    rng: &mut ChaCha8Rng,
+    rng: &mut SeededRng,
 ) -> Vec<Place> {
     let areas = triangulation
         .corners(x)
@@ -98,7 +96,7 @@ pub(super) fn sample_source(
         }
     };
     let mut source: Vec<Place> = places.into_iter().map(place).collect();
-    source.shuffle(rng);
+    rng.shuffle(&mut source);
     source
 }
 
@@ -107,10 +105,10 @@ pub(super) fn sample_target(
     target: &dyn TargetSurface,
     frame: &UnitFrame,
     n: usize,
-    rng: &mut ChaCha8Rng,
+    rng: &mut SeededRng,
 ) -> Vec<Place> {
     let mut samples = target.sample(n, rng);
-    samples.shuffle(rng);
+    rng.shuffle(&mut samples);
     let place = |s: &mesh_core::SurfaceSample| Place {
         point: frame.to_unit(&s.point).coords,
         normal: target.normal(&s.location),

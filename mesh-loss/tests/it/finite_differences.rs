@@ -1,8 +1,11 @@
 //! Each analytic gradient equals central differences in f64, on triangles and polygons, closed and open shapes.
 
+use std::sync::Arc;
+
+use mesh_core::sampling::SeededRng;
 use mesh_core::{
-    shapes, Landmark, MeshPoint, Point3, PolygonSoup, Positions, Profile, TriangleSoup,
-    Triangulation, UnitFrame, Vector3, VertexData, VertexId,
+    shapes, Landmark, MeshPoint, Point3, PolygonSoup, Positions, Profile, TargetSurface,
+    TriangleSoup, Triangulation, UnitFrame, Vector3, VertexData, VertexId,
 };
 use mesh_loss::{
     AreaKl, Chamfer, Conformal, CornerAngle, Drift, Flip, FoldBarrier, LandmarkDistance,
@@ -10,8 +13,6 @@ use mesh_loss::{
     WorstDistance,
 };
 use proptest::prelude::*;
-use rand::{Rng, SeedableRng};
-use rand_chacha::ChaCha8Rng;
 
 /// Step of the central differences: its error, h² times a third derivative, is about 1e-10 here.
 const STEP: f64 = 1e-5;
@@ -33,18 +34,18 @@ pub(crate) fn all_shapes() -> Vec<PolygonSoup> {
 }
 
 pub(crate) struct Setup {
-    pub(crate) triangulation: Triangulation,
+    pub(crate) triangulation: Arc<Triangulation>,
     pub(crate) rest: Positions,
     pub(crate) moved: Positions,
-    pub(crate) rng: ChaCha8Rng,
+    pub(crate) rng: SeededRng,
 }
 
 /// A shape at rest and a random deformation of it.
 pub(crate) fn setup(shape: usize, seed: u64, amount: f64) -> Setup {
     let soup = all_shapes().swap_remove(shape);
     let (mesh, rest) = soup.into_halfedge().expect("a shape is a mesh");
-    let triangulation = Triangulation::new(&mesh, &rest);
-    let mut rng = ChaCha8Rng::seed_from_u64(seed);
+    let triangulation = Arc::new(Triangulation::new(&mesh, &rest));
+    let mut rng = SeededRng::new(seed);
     let moved = rest.map(|p| p + random_vector(&mut rng) * amount);
     Setup {
         triangulation,
@@ -54,8 +55,8 @@ pub(crate) fn setup(shape: usize, seed: u64, amount: f64) -> Setup {
     }
 }
 
-fn random_vector(rng: &mut ChaCha8Rng) -> Vector3 {
-    Vector3::from_fn(|_, _| rng.random_range(-1.0..1.0))
+fn random_vector(rng: &mut SeededRng) -> Vector3 {
+    Vector3::from_fn(|_, _| rng.uniform_in(-1.0..1.0))
 }
 
 /// Directional derivatives along random directions. A kink, or a curvature too strong for the step, shows as a
@@ -63,7 +64,7 @@ fn random_vector(rng: &mut ChaCha8Rng) -> Vector3 {
 fn assert_gradient(
     loss: &dyn Loss,
     x: &Positions,
-    rng: &mut ChaCha8Rng,
+    rng: &mut SeededRng,
 ) -> Result<(), TestCaseError> {
     let value_at =
         |x: &Positions| loss.accumulate(x, 1.0, &mut VertexData::new(x.len(), Vector3::zeros()));
@@ -95,6 +96,7 @@ fn assert_gradient(
 
 fn matches(s: &mut Setup, normal_bias: Option<f64>) -> Matches {
     let target = TriangleSoup::new(shapes::icosphere(2)).expect("a sphere is a target");
+    let target: Arc<dyn TargetSurface> = Arc::new(target);
     let config = SamplingConfig {
         n_samples: 40,
         face_uniform: 0.5,
@@ -121,7 +123,7 @@ proptest! {
         let terms: [&dyn Loss; 8] = [
             &CornerAngle::new(t, &s.rest),
             &AreaKl::new(t, &s.rest),
-            &TriangleQuality { triangulation: t, threshold: 0.9 },
+            &TriangleQuality::new(t, 0.9),
             &Flip::new(t, &s.rest),
             &FoldBarrier::new(t, &s.rest, 0.95),
             &Conformal::new(t, &s.rest),

@@ -1,9 +1,12 @@
 //! What counts where one shape lacks a part of the other.
 
-use mesh_core::{shapes, PolygonSoup, Positions, Profile, TriangleSoup, Triangulation, VertexData};
+use std::sync::Arc;
+
+use mesh_core::sampling::SeededRng;
+use mesh_core::{
+    shapes, PolygonSoup, Positions, Profile, TargetSurface, TriangleSoup, Triangulation, VertexData,
+};
 use mesh_loss::{Matches, Overlap, SamplingConfig, SurfaceMatch, SurfaceMatcher};
-use rand::SeedableRng;
-use rand_chacha::ChaCha8Rng;
 
 use crate::finite_differences::UNIT;
 
@@ -24,8 +27,9 @@ fn pairs_as(
     attraction: impl Fn(f64) -> f64,
 ) -> (Positions, Matches) {
     let (mesh, rest) = flat().into_halfedge().expect("a sound shape");
-    let triangulation = Triangulation::new(&mesh, &rest);
-    let target = TriangleSoup::new(target).expect("a sound shape");
+    let triangulation = Arc::new(Triangulation::new(&mesh, &rest));
+    let target: Arc<dyn TargetSurface> =
+        Arc::new(TriangleSoup::new(target).expect("a sound shape"));
     let config = SamplingConfig {
         n_samples: 500,
         face_uniform: 0.5,
@@ -37,7 +41,7 @@ fn pairs_as(
     let mut matcher = SurfaceMatcher::new(&triangulation, &rest, &target, UNIT);
     let attraction: VertexData<f64> = rest.iter().map(|p| attraction(p.z)).collect();
     matcher.set_attraction(&attraction);
-    let mut rng = ChaCha8Rng::seed_from_u64(1);
+    let mut rng = SeededRng::new(1);
     let mut resample = || matcher.resample(&rest, &config, &mut rng, &mut Profile::off());
     // Far corners are kept in mind from one time to the next.
     let matches = (0..8).map(|_| resample()).last().expect("a sound shape");

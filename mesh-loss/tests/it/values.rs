@@ -1,6 +1,12 @@
 //! Values in closed form: 0 at rest, invariances, bounds.
 
-use mesh_core::{shapes, Point3, Positions, Profile, TriangleSoup, Vector3, VertexData};
+use std::sync::Arc;
+
+use mesh_core::sampling::SeededRng;
+use mesh_core::{
+    shapes, Point3, Positions, Profile, TargetSurface, TriangleSoup, Triangulation, Vector3,
+    VertexData,
+};
 use mesh_loss::{
     AreaKl, Chamfer, Conformal, CornerAngle, Drift, Flip, FoldBarrier, LocalShape, Loss,
     SamplingConfig, SurfaceMatcher, TriangleQuality, WorstDistance,
@@ -23,10 +29,7 @@ fn structural_terms_and_their_gradients_vanish_at_rest() {
         let terms: [&dyn Loss; 8] = [
             &CornerAngle::new(t, &s.rest),
             &AreaKl::new(t, &s.rest),
-            &TriangleQuality {
-                triangulation: t,
-                threshold: 0.1,
-            },
+            &TriangleQuality::new(t, 0.1),
             &Flip::new(t, &s.rest),
             &FoldBarrier::new(t, &s.rest, 0.3),
             &Conformal::new(t, &s.rest),
@@ -59,7 +62,7 @@ proptest! {
         let terms: [&dyn Loss; 5] = [
             &CornerAngle::new(t, &s.rest),
             &AreaKl::new(t, &s.rest),
-            &TriangleQuality { triangulation: t, threshold: 0.9 },
+            &TriangleQuality::new(t, 0.9),
             &Conformal::new(t, &s.rest),
             &LocalShape::new(t, &s.rest),
         ];
@@ -74,8 +77,9 @@ proptest! {
 #[test]
 fn chamfer_of_a_shifted_plane_is_the_shift() {
     let (mesh, rest) = shapes::open_grid(4, 4).into_halfedge().unwrap();
-    let triangulation = mesh_core::Triangulation::new(&mesh, &rest);
-    let target = TriangleSoup::new(shapes::open_grid(4, 4)).unwrap();
+    let triangulation = Arc::new(Triangulation::new(&mesh, &rest));
+    let target: Arc<dyn TargetSurface> =
+        Arc::new(TriangleSoup::new(shapes::open_grid(4, 4)).unwrap());
     let shifted = rest.map(|p| p + Vector3::z() * 0.25);
     let config = SamplingConfig {
         n_samples: 100,
@@ -85,7 +89,7 @@ fn chamfer_of_a_shifted_plane_is_the_shift() {
         overlap: mesh_loss::Overlap::default(),
         mutual: 0.7,
     };
-    let mut rng = <rand_chacha::ChaCha8Rng as rand::SeedableRng>::seed_from_u64(3);
+    let mut rng = SeededRng::new(3);
     let matches = SurfaceMatcher::new(&triangulation, &shifted, &target, UNIT).resample(
         &shifted,
         &config,
@@ -104,7 +108,7 @@ fn chamfer_of_a_shifted_plane_is_the_shift() {
 #[test]
 fn half_turned_pair_of_faces_is_stopped_by_the_barrier() {
     let (mesh, rest) = shapes::open_grid(2, 1).into_halfedge().unwrap();
-    let triangulation = mesh_core::Triangulation::new(&mesh, &rest);
+    let triangulation = Arc::new(Triangulation::new(&mesh, &rest));
     let mut folded = rest.clone();
     for p in folded.iter_mut().filter(|p| p.x == 2.0) {
         p.x = 0.5;
@@ -123,7 +127,7 @@ fn folds_of_thin_faces_pull_no_harder_than_others() {
         for p in rest.iter_mut().filter(|p| p.x > 4.0) {
             p.x += height - 1.0;
         }
-        let triangulation = mesh_core::Triangulation::new(&mesh, &rest);
+        let triangulation = Arc::new(Triangulation::new(&mesh, &rest));
         let mut folded = rest.clone();
         for p in folded.iter_mut().filter(|p| p.x > 4.0) {
             p.x = 8.0 - p.x;

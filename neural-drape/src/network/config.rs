@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::DrapeError;
+use crate::setting::Setting;
 
 /// Shape of the network that maps initial positions to draped ones.
 ///
@@ -117,23 +117,21 @@ impl NetworkConfig {
         }
     }
 
-    /// Every setting is in its range.
-    pub(super) fn check(&self) -> Result<(), DrapeError> {
-        let count = (1.0, f64::MAX, "1 or more");
-        let frequency = (0.0, f64::MAX, "0 or more");
+    /// Each setting with its range.
+    pub(crate) fn settings(&self) -> Vec<Setting> {
         let mut settings = vec![
-            ("n_hidden_layers", self.n_hidden_layers as f64, count),
-            ("width", self.width as f64, count),
-            (
-                "output_scale",
-                self.output_scale,
-                (f64::MIN_POSITIVE, f64::MAX, "above 0"),
-            ),
+            Setting::count("n_hidden_layers", self.n_hidden_layers),
+            Setting::count("width", self.width),
+            Setting::positive("output_scale", self.output_scale),
         ];
         match self.encoding.frequencies() {
-            Some(Frequencies::Uniform { max, .. }) => settings.push(("max", max, frequency)),
-            Some(Frequencies::Gaussian { deviation, .. }) => {
-                settings.push(("deviation", deviation, frequency));
+            Some(Frequencies::Uniform { count, max, .. }) => {
+                settings.push(Setting::count_or_none("count", count));
+                settings.push(Setting::not_negative("max", max));
+            }
+            Some(Frequencies::Gaussian { count, deviation }) => {
+                settings.push(Setting::count_or_none("count", count));
+                settings.push(Setting::not_negative("deviation", deviation));
             }
             None => {}
         }
@@ -141,24 +139,30 @@ impl NetworkConfig {
             n_blocks, reveal, ..
         } = self.encoding
         {
-            settings.push(("n_blocks", n_blocks as f64, count));
+            settings.push(Setting::count("n_blocks", n_blocks));
             if let Reveal::Even { until } = reveal {
-                settings.push((
-                    "until",
-                    until,
-                    (f64::MIN_POSITIVE, 1.0, "above 0 and at most 1"),
-                ));
+                settings.push(Setting::positive_share("until", until));
             }
         }
-        for (name, value, (least, most, expected)) in settings {
-            if !(least..=most).contains(&value) {
-                return Err(DrapeError::Setting {
-                    name,
-                    value,
-                    expected,
-                });
-            }
+        settings
+    }
+}
+
+impl Encoding {
+    /// The waves' description, if there are any.
+    pub(super) fn frequencies(&self) -> Option<Frequencies> {
+        match *self {
+            Self::None => None,
+            Self::Static(frequencies) | Self::Progressive { frequencies, .. } => Some(frequencies),
         }
-        Ok(())
+    }
+
+    /// How many features a point has: its coordinates and its waves.
+    pub(crate) fn n_features(&self) -> usize {
+        match self.frequencies() {
+            None => 3,
+            Some(Frequencies::Uniform { count, .. }) => count.saturating_add(3),
+            Some(Frequencies::Gaussian { count, .. }) => count.saturating_mul(2).saturating_add(3),
+        }
     }
 }

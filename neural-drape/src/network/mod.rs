@@ -1,180 +1,63 @@
 //! The paper's parametrisation: a network whose parameters say where every vertex goes.
+//!
+//! | file | what |
+//! |---|---|
+//! | `config` | depth, width, encoding and the schedule that reveals it |
+//! | `encoding`, `draw` | the features γ(x) of a point: waves, and how they are drawn |
+//! | `mask` | the mask α of the progressive encoding: the first layer sees α ⊙ γ(x) |
+//! | `layer` | a fully connected layer and the ReLU, forward and backward |
+//! | `block`, `pass` | all layers over all points, forward and backward, in fixed groups |
+//! | `map` | the network as a map of space, with the weights at hand |
+//! | `tape` | the parameters on dfdx's tape, and its Adam |
+//! | `mlp` | [`Network`]: all of it as a parametrisation |
+//!
+//! `draw`, `mask`, `pass`, `tape` and `mlp`, that is, all that trains, need the cargo feature `network`.
 
+mod block;
 mod config;
+#[cfg(feature = "network")]
+mod draw;
 mod encoding;
+mod layer;
 mod map;
-mod parameters;
+#[cfg(feature = "network")]
+mod mask;
+#[cfg(feature = "network")]
+mod mlp;
+#[cfg(feature = "network")]
 mod pass;
-#[cfg(test)]
-mod tests;
+#[cfg(feature = "network")]
+mod tape;
 
 pub use config::{Encoding, Frequencies, NetworkConfig, Reveal};
 pub use map::NetworkMap;
+#[cfg(feature = "network")]
+pub use mlp::Network;
 
-use std::sync::{Arc, Mutex};
+use mesh_core::Positions;
 
-use dfdx::prelude::{Cpu, CpuError, Gradients};
-use mesh_core::{Aabb, Positions, UnitFrame, Vector3, VertexData};
-use rand::SeedableRng;
-use rand_chacha::ChaCha8Rng;
-
-use crate::{DrapeError, Parametrization, StateReader, StateWriter};
+use crate::{DrapeError, Parametrization};
 pub(crate) use encoding::{WaveKind, Waves};
-pub(crate) use map::Layer;
-use parameters::{lock, Adam, Evaluation, Parameters};
-use pass::Pass;
+pub(crate) use layer::Layer;
 
-/// Positions as a network of the initial positions: `x = x₀ + r · mlp(encoding(x₀ / r))`, r half the longest side.
-///
-/// The last layer starts at zero, so the network starts exactly at the initial positions, and equal initial positions
-/// stay equal. dfdx owns the parameters, the tape and Adam (betas 0.9 and 0.999, ε 1e-8); the layers are one fused
-/// operation on its tape. Inside all is f32; the same seed gives the same bits whatever the thread count.
-///
-/// Source: Mesh Draping, "Progressive Positional Encoding". Departures: see [`NetworkConfig::paper`].
-#[derive(Debug)]
-pub struct Network {
-    encoding: Encoding,
-    initial: Positions,
-    positions: Positions,
-    parameters: Parameters,
-    adam: Adam,
-    evaluation: Arc<Mutex<Evaluation>>,
-    progress: f64,
-    /// Whether more than the network moves the initial positions.
-    is_displaced: bool,
-}
-
-impl Network {
-    /// A network that leaves `initial` where it is, with every other weight drawn from `seed`.
-    ///
-    /// # Errors
-    /// A setting is out of its range.
-    ///
-    /// # Panics
-    /// If there is no position.
-    pub fn new(initial: &Positions, config: &NetworkConfig, seed: u64) -> Result<Self, DrapeError> {
-        assert!(!initial.is_empty(), "a network needs a vertex to move");
-        config.check()?;
-        let mut rng = ChaCha8Rng::seed_from_u64(seed);
-        let waves = Waves::draw(&config.encoding, &mut rng);
-        let is_trainable = config.encoding.is_trainable();
-        let mut sizes = vec![config.width; config.n_hidden_layers + 2];
-        sizes[0] = waves.n_features();
-        sizes[config.n_hidden_layers + 1] = 3;
-        let parameters = Parameters::draw(&sizes, is_trainable.then_some(&waves), &mut rng);
-
-        let mask = mask(&config.encoding, &waves, 0.0);
-        let mut map = NetworkMap {
-            frame: UnitFrame::of(Aabb::of(initial)),
-            output_scale: config.output_scale,
-            waves,
-            layers: Vec::new(),
-        };
-        parameters.copy_into(&mut map, &mask);
-        let inputs: Vec<[f32; 3]> = initial.iter().map(|p| map.to_input(p)).collect();
-        let mut pass = Pass::new(&inputs, &map, is_trainable);
-        pass.forward(&map);
-        Ok(Self {
-            encoding: config.encoding,
-            initial: initial.clone(),
-            positions: initial.clone(),
-            parameters,
-            adam: Adam::new(),
-            evaluation: Arc::new(Mutex::new(Evaluation { map, pass, mask })),
-            progress: 0.0,
-            is_displaced: false,
-        })
+impl NetworkConfig {
+    /// The network that moves `initial`.
+    #[cfg(feature = "network")]
+    pub(crate) fn build(
+        &self,
+        initial: &Positions,
+        seed: u64,
+    ) -> Result<Box<dyn Parametrization>, DrapeError> {
+        Ok(Box::new(Network::new(initial, self, seed)?))
     }
 
-    /// dL/dθ for `gradient` = dL/dx.
-    fn gradients(&self, gradient: &VertexData<Vector3>) -> Result<Gradients<f32, Cpu>, CpuError> {
-        let unit = lock(&self.evaluation).map.output_unit();
-        let by_output = gradient
-            .iter()
-            .flat_map(|g| [g.x, g.y, g.z].map(|d| (d * unit) as f32))
-            .collect();
-        self.parameters.gradients(&self.evaluation, by_output)
+    /// An error: this build has no network.
+    #[cfg(not(feature = "network"))]
+    pub(crate) fn build(
+        &self,
+        _initial: &Positions,
+        _seed: u64,
+    ) -> Result<Box<dyn Parametrization>, DrapeError> {
+        Err(DrapeError::NetworkFeatureOff)
     }
-
-    /// Evaluates the network at its present parameters and progress.
-    fn evaluate(&mut self) {
-        let Evaluation { map, pass, mask } = &mut *lock(&self.evaluation);
-        *mask = self::mask(&self.encoding, &map.waves, self.progress);
-        self.parameters.copy_into(map, mask);
-        pass.forward(map);
-        let moved = self
-            .positions
-            .iter_mut()
-            .zip(&self.initial)
-            .zip(pass.outputs());
-        for ((x, x0), output) in moved {
-            *x = x0 + map.offset(output);
-        }
-    }
-}
-
-impl Parametrization for Network {
-    fn positions(&self) -> &Positions {
-        &self.positions
-    }
-
-    fn descend(
-        &mut self,
-        gradient: &VertexData<Vector3>,
-        learning_rate: f64,
-    ) -> Result<(), DrapeError> {
-        let mut gradients = self.gradients(gradient)?;
-        self.adam
-            .step(&mut self.parameters, &mut gradients, learning_rate)?;
-        self.evaluate();
-        Ok(())
-    }
-
-    fn set_progress(&mut self, progress: f64) -> Result<(), DrapeError> {
-        // A run that goes on hides nothing that was revealed.
-        self.progress = self.progress.max(progress);
-        Ok(())
-    }
-
-    fn displace(&mut self, displacements: &VertexData<Vector3>) {
-        let moved = self.initial.iter_mut().zip(self.positions.iter_mut());
-        for ((x0, x), d) in moved.zip(displacements) {
-            *x0 += d;
-            *x += d;
-        }
-        self.is_displaced = true;
-    }
-
-    fn save(&mut self, state: &mut StateWriter) {
-        state.count(usize::from(self.is_displaced));
-        state.real(self.progress);
-        state.points(self.initial.iter().chain(&self.positions));
-        self.parameters.save(state);
-        self.adam.save(&mut self.parameters, state);
-    }
-
-    fn restore(&mut self, state: &mut StateReader<'_>) -> Result<(), DrapeError> {
-        self.is_displaced = state.count()? != 0;
-        self.progress = state.real()?;
-        let points = self.initial.iter_mut().chain(self.positions.iter_mut());
-        state.points(points)?;
-        self.parameters.restore(state)?;
-        self.adam.restore(&mut self.parameters, state)?;
-        self.evaluate();
-        Ok(())
-    }
-
-    /// The map from initial positions to the present ones, without what is hidden; none once they were displaced.
-    fn network(&self) -> Option<NetworkMap> {
-        (!self.is_displaced).then(|| lock(&self.evaluation).map.clone())
-    }
-}
-
-/// Weight of each feature at `progress`: 1 for the coordinates, then that of its row.
-fn mask(encoding: &Encoding, waves: &Waves, progress: f64) -> Vec<f32> {
-    let rows = encoding.row_weights(waves.rows.len(), progress);
-    let of_waves = rows
-        .into_iter()
-        .flat_map(|w| std::iter::repeat_n(w, waves.kind.n_features()));
-    [1.0; 3].into_iter().chain(of_waves).collect()
 }

@@ -1,12 +1,13 @@
 //! Forward and backward through the network for all points, fused and in fixed groups: the same bits whatever the
 //! thread count.
 
-use faer::linalg::matmul::matmul;
-use faer::{Accum, MatMut, MatRef, Par};
+use faer::MatRef;
 use rayon::prelude::*;
 
+use super::block::{Block, BLOCK_SIZE};
 use super::encoding::Waves;
-use super::map::{columns, Block, Layer, NetworkMap, BLOCK_SIZE};
+use super::layer::{columns, pull_back_relu, Layer};
+use super::map::NetworkMap;
 
 /// Blocks of one lane, at least: a lane has gradients of its own, which cost as much to sum as a few points.
 const BLOCKS_PER_LANE: usize = 3;
@@ -51,7 +52,7 @@ impl Pass {
         let n_lanes = (n_blocks / BLOCKS_PER_LANE).clamp(1, MAX_LANES);
         let mut blocks: Vec<Block> = points
             .chunks(points.len().div_ceil(n_blocks).max(1))
-            .map(|chunk| Block::new(chunk.to_vec(), map))
+            .map(|chunk| Block::new(chunk.to_vec(), &map.waves, &map.layers))
             .collect();
         for block in &mut blocks {
             if is_trainable {
@@ -150,9 +151,7 @@ impl Block {
                 &scratch.outer,
             );
             layer.pull_back(&scratch.outer, &mut scratch.inner);
-            for (d, &activation) in scratch.inner.iter_mut().zip(input) {
-                *d = if activation > 0.0 { *d } else { 0.0 };
-            }
+            pull_back_relu(&mut scratch.inner, input);
             std::mem::swap(&mut scratch.outer, &mut scratch.inner);
         }
 
@@ -188,40 +187,6 @@ impl Block {
                 }
             }
         }
-    }
-}
-
-impl Layer {
-    /// Adds dL/dW = x (dL/dy)ᵀ and dL/db = Σ dL/dy.
-    fn add_gradient(&self, sum: &mut Self, input: MatRef<'_, f32>, by_output: &[f32]) {
-        let view =
-            MatMut::from_column_major_slice_mut(&mut sum.weight, self.n_outputs(), self.n_inputs());
-        let by_output_view = columns(by_output, input.ncols(), self.n_outputs());
-        matmul(
-            view,
-            Accum::Add,
-            by_output_view,
-            input.transpose(),
-            1.0,
-            Par::Seq,
-        );
-        for column in by_output.chunks(self.n_outputs()) {
-            sum.bias.iter_mut().zip(column).for_each(|(b, d)| *b += d);
-        }
-    }
-
-    /// dL/dx = W dL/dy.
-    fn pull_back(&self, by_output: &[f32], by_input: &mut Vec<f32>) {
-        let n = by_output.len() / self.n_outputs();
-        by_input.resize(n * self.n_inputs(), 0.0);
-        matmul(
-            MatMut::from_column_major_slice_mut(by_input, self.n_inputs(), n),
-            Accum::Replace,
-            self.transposed().transpose(),
-            columns(by_output, n, self.n_outputs()),
-            1.0,
-            Par::Seq,
-        );
     }
 }
 

@@ -1,6 +1,6 @@
 //! What is broken in a mesh that was not at rest.
 
-use std::borrow::Cow;
+use std::sync::Arc;
 
 use mesh_core::measure::{triangle_normal, triangle_quality};
 use mesh_core::{Positions, Triangulation, TriangulationEdge, Vector3, VertexId};
@@ -16,12 +16,12 @@ const SKINNY_QUALITY: f64 = 0.1;
 /// Tells what is broken that was not at rest, however the polygons are cut.
 pub(super) struct Judge<'a> {
     rest: &'a Positions,
-    pub(super) cuts: Vec<Cut<'a>>,
+    pub(super) cuts: Vec<Cut>,
 }
 
 /// The polygons as triangles, and the edges that are not folded at rest.
-pub(super) struct Cut<'a> {
-    triangulation: Cow<'a, Triangulation>,
+pub(super) struct Cut {
+    triangulation: Arc<Triangulation>,
     edges: Vec<TriangulationEdge>,
 }
 
@@ -36,9 +36,9 @@ pub(super) struct Broken {
 pub(super) struct Reach(Broken);
 
 impl<'a> Judge<'a> {
-    pub(super) fn new(triangulation: &'a Triangulation, rest: &'a Positions) -> Self {
-        let simple = triangulation.simply_cut().map(Cow::Owned);
-        let cuts = std::iter::once(Cow::Borrowed(triangulation)).chain(simple);
+    pub(super) fn new(triangulation: &Arc<Triangulation>, rest: &'a Positions) -> Self {
+        let simple = triangulation.simply_cut().map(Arc::new);
+        let cuts = std::iter::once(Arc::clone(triangulation)).chain(simple);
         Self {
             rest,
             cuts: cuts.map(|triangles| Cut::new(triangles, rest)).collect(),
@@ -96,11 +96,9 @@ impl<'a> Judge<'a> {
     }
 
     /// What keeps edges from folding, in every cut.
-    pub(super) fn barriers(&self, limit: f64) -> Vec<FoldBarrier<'_>> {
-        let triangles = self.cuts.iter().map(|cut| &*cut.triangulation);
-        triangles
-            .map(|t| FoldBarrier::new(t, self.rest, limit))
-            .collect()
+    pub(super) fn barriers(&self, limit: f64) -> Vec<FoldBarrier> {
+        let barrier = |cut: &Cut| FoldBarrier::new(&cut.triangulation, self.rest, limit);
+        self.cuts.iter().map(barrier).collect()
     }
 
     /// Of `rows`, the triangles that are skinny at `x` and were not at rest.
@@ -114,8 +112,8 @@ impl<'a> Judge<'a> {
     }
 }
 
-impl<'a> Cut<'a> {
-    fn new(triangulation: Cow<'a, Triangulation>, rest: &Positions) -> Self {
+impl Cut {
+    fn new(triangulation: Arc<Triangulation>, rest: &Positions) -> Self {
         let normals = normals(&triangulation, rest);
         let mut edges = triangulation.interior_edges();
         edges.retain(|e| !is_folded(e, |t| normals[t]));
@@ -160,7 +158,7 @@ struct Rows {
 
 impl<'a> Surroundings<'a> {
     pub(super) fn new(judge: &'a Judge<'a>, n_vertices: usize) -> Self {
-        let of_cut = |cut: &Cut<'_>| {
+        let of_cut = |cut: &Cut| {
             let triangles = cut.triangulation.triangles();
             let corners = (0..).zip(triangles);
             let corners = corners.flat_map(|(t, corners)| corners.map(|v| (v.index(), t)));
@@ -200,7 +198,7 @@ impl<'a> Surroundings<'a> {
     /// The least cosine at an edge of the patch that was not folded at rest.
     pub(super) fn sharpest(&self, x: &Positions, patch: &[VertexId]) -> f64 {
         let reach = self.reach(patch);
-        let of_cut = |(cut, rows): (&Cut<'_>, &Vec<u32>)| {
+        let of_cut = |(cut, rows): (&Cut, &Vec<u32>)| {
             let edges = rows.iter().map(|&row| cut.edge(row));
             let is_in_patch = |v: &VertexId| patch.binary_search(v).is_ok();
             let inside = edges.filter(|e| e.vertices.iter().all(is_in_patch));
@@ -281,7 +279,7 @@ mod tests {
     #[test]
     fn polygons_that_simple_programs_cut_otherwise_are_judged_twice() {
         let (mesh, rest) = shapes::open_grid(6, 6).into_halfedge().unwrap();
-        let triangulation = Triangulation::new(&mesh, &rest);
+        let triangulation = Arc::new(Triangulation::new(&mesh, &rest));
         assert!(triangulation.simply_cut().is_none());
         let judge = Judge::new(&triangulation, &rest);
         assert_eq!(judge.cuts.len(), 1);
@@ -292,7 +290,7 @@ mod tests {
         assert!(judge.defects(&judge.broken(&rest)).is_empty());
     }
 
-    fn kites() -> (Triangulation, Positions) {
+    fn kites() -> (Arc<Triangulation>, Positions) {
         let kites = PolygonSoup {
             positions: [[0., 0.], [1., 5.], [0., 0.5], [-1., 5.], [0., 9.]]
                 .map(|[x, y]| Point3::new(x, y, 0.0))
@@ -300,14 +298,14 @@ mod tests {
             faces: vec![vec![0, 1, 2, 3], vec![1, 4, 3, 2]],
         };
         let (mesh, rest) = kites.into_halfedge().unwrap();
-        (Triangulation::new(&mesh, &rest), rest)
+        (Arc::new(Triangulation::new(&mesh, &rest)), rest)
     }
 
     /// Moves a vertex of a broken mesh and then its neighbourhood: judged nearby, judged all over, all the same.
     #[test]
     fn what_is_judged_nearby_is_what_is_judged_all_over() {
         let (mesh, rest) = shapes::quad_sphere(12).into_halfedge().unwrap();
-        let ball = (Triangulation::new(&mesh, &rest), rest);
+        let ball = (Arc::new(Triangulation::new(&mesh, &rest)), rest);
         for (triangulation, rest) in [ball, kites()] {
             let judge = Judge::new(&triangulation, &rest);
             let surroundings = Surroundings::new(&judge, rest.len());

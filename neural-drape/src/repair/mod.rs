@@ -2,6 +2,8 @@
 
 mod judge;
 
+use std::sync::Arc;
+
 use mesh_core::{Point3, Positions, Triangulation, UnitFrame, Vector3, VertexData, VertexId};
 use mesh_loss::{FoldBarrier, LocalShape};
 
@@ -61,7 +63,7 @@ impl Defects {
 ///
 /// The vertices of `held`, such as those of landmarks, stay where they are.
 pub fn repair(
-    triangulation: &Triangulation,
+    triangulation: &Arc<Triangulation>,
     rest: &Positions,
     x: &Positions,
     held: &[VertexId],
@@ -103,7 +105,7 @@ struct Mender<'a> {
     judge: &'a Judge<'a>,
     surroundings: Surroundings<'a>,
     shape: LocalShape,
-    barriers: Vec<FoldBarrier<'a>>,
+    barriers: Vec<FoldBarrier>,
     neighbours: VertexData<Vec<VertexId>>,
     held: &'a [VertexId],
     size: f64,
@@ -203,7 +205,11 @@ impl Mender<'_> {
 }
 
 /// What is broken at `x` that was not at rest.
-pub(crate) fn defects(triangulation: &Triangulation, rest: &Positions, x: &Positions) -> Defects {
+pub(crate) fn defects(
+    triangulation: &Arc<Triangulation>,
+    rest: &Positions,
+    x: &Positions,
+) -> Defects {
     let judge = Judge::new(triangulation, rest);
     judge.defects(&judge.broken(x))
 }
@@ -220,9 +226,9 @@ mod tests {
 
     use super::*;
 
-    fn sphere(n: usize) -> (Triangulation, Positions) {
+    fn sphere(n: usize) -> (Arc<Triangulation>, Positions) {
         let (mesh, rest) = shapes::quad_sphere(n).into_halfedge().unwrap();
-        (Triangulation::new(&mesh, &rest), rest)
+        (Arc::new(Triangulation::new(&mesh, &rest)), rest)
     }
 
     #[test]

@@ -2,12 +2,17 @@
 
 use std::sync::OnceLock;
 
-use mesh_core::{shapes, Aabb, PolygonSoup, UnitFrame, VertexData};
+#[cfg(feature = "network")]
+use mesh_core::VertexData;
+use mesh_core::{shapes, Aabb, PolygonSoup, UnitFrame};
 use proptest::prelude::*;
 
 use super::format::{decode, encode, FormatError};
 use super::*;
+use crate::network::{Layer, NetworkMap, WaveKind, Waves};
+#[cfg(feature = "network")]
 use crate::network::{Network, NetworkConfig};
+#[cfg(feature = "network")]
 use crate::Parametrization;
 
 fn solids() -> [PolygonSoup; 3] {
@@ -34,6 +39,7 @@ fn warp_of(soup: &PolygonSoup, draped: impl Fn(&Point3) -> Point3) -> (Warp, Pos
 }
 
 /// A warp with a trained network, the source at rest, and where the network took it.
+#[cfg(feature = "network")]
 fn network_warp(config: &NetworkConfig) -> (Warp, Positions, Positions) {
     let (mesh, rest) = shapes::icosphere(3).into_halfedge().unwrap();
     let initial = rest.map(|p| p + Vector3::new(0.0, 0.2 * p.x, 5.0));
@@ -110,6 +116,7 @@ fn a_refined_source_follows_between_the_vertices() {
     assert!(largest_distance(&warp.apply(&fine), &expected) < 2.5e-3);
 }
 
+#[cfg(feature = "network")]
 #[test]
 fn a_network_warp_repeats_the_network_on_the_surface_and_rests_far_away() {
     for config in [NetworkConfig::standard(), NetworkConfig::paper()] {
@@ -127,7 +134,7 @@ fn a_network_warp_repeats_the_network_on_the_surface_and_rests_far_away() {
 fn a_saved_warp_loads_with_the_same_bits() {
     let path = std::env::temp_dir().join(format!("neural_drape_{}.drape", std::process::id()));
     let (plain, ..) = warp_of(&solids()[2], |p| p + Vector3::new(p.y * p.y, 0.0, 1.0));
-    let (networked, ..) = network_warp(&NetworkConfig::paper());
+    let networked = warp_with_map();
     for warp in [plain, networked] {
         warp.save(&path).unwrap();
         let loaded = Warp::load(&path).unwrap();
@@ -140,16 +147,34 @@ fn a_saved_warp_loads_with_the_same_bits() {
     assert!(matches!(error, WarpError::Read { .. }));
 }
 
+/// A warp with a network of two waves and two neurons that nobody trained.
+fn warp_with_map() -> Warp {
+    let (warp, rest, _) = warp_of(&shapes::icosphere(2), |p| p + Vector3::new(p.y, 0.0, 1.0));
+    let waves = Waves {
+        rows: vec![[1.0, 0.5, 0.0], [0.0, -2.0, 3.0]],
+        gain: 1.0,
+        kind: WaveKind::SineCosine,
+    };
+    let layer = |n_inputs: usize, n_outputs: usize| Layer {
+        weight: (0..n_inputs * n_outputs)
+            .map(|k| (k as f32).sin())
+            .collect(),
+        bias: vec![0.1; n_outputs],
+    };
+    let map = NetworkMap {
+        frame: UnitFrame::of(Aabb::of(&rest)),
+        output_scale: 0.5,
+        layers: vec![layer(waves.n_features(), 2), layer(2, 3)],
+        waves,
+    };
+    Warp::from_parts(warp.extension, Some(map), warp.surface)
+}
+
 /// A small file with every part.
 fn file() -> Vec<u8> {
     static FILE: OnceLock<Vec<u8>> = OnceLock::new();
     let make = || {
-        let config = NetworkConfig {
-            n_hidden_layers: 1,
-            width: 2,
-            ..NetworkConfig::standard()
-        };
-        let (warp, ..) = network_warp(&config);
+        let warp = warp_with_map();
         encode(&warp.extension, warp.network.as_ref(), &warp.surface)
     };
     FILE.get_or_init(make).clone()

@@ -1,5 +1,6 @@
 //! The stepper as its users call it.
 
+mod inputs;
 mod landmarks;
 mod part;
 mod regions;

@@ -1,5 +1,7 @@
 //! A target that is only a part of what the source shows.
 
+use std::sync::Arc;
+
 use mesh_core::measure::corner_angle;
 use mesh_core::{shapes, Positions, TargetSurface, TriangleSoup, VertexId};
 use neural_drape::{Drape, DrapeConfig, DrapeInput, OverlapMode};
@@ -7,18 +9,18 @@ use neural_drape::{Drape, DrapeConfig, DrapeInput, OverlapMode};
 use crate::setup::{on_ellipsoid, run, short, Pair};
 
 /// The ellipsoid, with a hole where it is highest.
-fn holed() -> TriangleSoup {
+fn holed() -> Arc<dyn TargetSurface> {
     let mut soup = shapes::icosphere(3);
     let is_low = |f: &Vec<u32>| f.iter().all(|&v| soup.positions[v as usize].z < 0.6);
     soup.faces = soup.faces.iter().filter(|f| is_low(f)).cloned().collect();
     soup.positions.iter_mut().for_each(|p| *p = on_ellipsoid(p));
-    TriangleSoup::new(soup).expect("a shape with a hole")
+    Arc::new(TriangleSoup::new(soup).expect("a shape with a hole"))
 }
 
 /// A short run over a target that is a part.
 fn over_part<'a>(
     pair: &'a Pair,
-    target: &'a TriangleSoup,
+    target: &'a Arc<dyn TargetSurface>,
     n_iterations: usize,
 ) -> (DrapeInput<'a>, DrapeConfig) {
     let input = DrapeInput {
@@ -72,7 +74,7 @@ fn a_kept_drape_over_a_part_goes_on_to_the_same_bits() {
     config.sampling.n_samples = 400;
     config.sampling.double_every = None;
     config.sampling.max_samples = 400;
-    let steps = |drape: &mut Drape<'_>, n: usize| {
+    let steps = |drape: &mut Drape, n: usize| {
         (0..n).for_each(|_| drop(drape.step().expect("a step")));
     };
     let mut drape = Drape::new(input, config.clone()).unwrap();

@@ -1,23 +1,23 @@
 //! A drape can be kept and gone on with, moved, and made longer.
 
 use mesh_core::{shapes, Landmark, Positions, Vector3, VertexData, VertexId};
-use neural_drape::{Drape, DrapeConfig, DrapeError, DrapeState};
+use neural_drape::{Drape, DrapeError, DrapeState};
 
-use crate::setup::{short, Pair};
+use crate::setup::{presets, short, Pair};
 
-fn steps(drape: &mut Drape<'_>, n: usize) {
+fn steps(drape: &mut Drape, n: usize) {
     for _ in 0..n {
         drape.step().expect("a step");
     }
 }
 
-fn end(mut drape: Drape<'_>) -> Positions {
+fn end(mut drape: Drape) -> Positions {
     while drape.step().expect("a step").is_some() {}
     drape.positions()
 }
 
 /// A ball with a landmark that is added, and iterations too.
-fn changed_on_the_way(drape: &mut Drape<'_>, pair: &Pair) {
+fn changed_on_the_way(drape: &mut Drape, pair: &Pair) {
     let v = VertexId::new(3);
     drape
         .set_landmarks(&[Landmark::new(v, crate::setup::on_ellipsoid(&pair.rest[v]))])
@@ -30,7 +30,7 @@ fn changed_on_the_way(drape: &mut Drape<'_>, pair: &Pair) {
 #[test]
 fn a_kept_drape_goes_on_to_the_same_bits() {
     let pair = Pair::new(shapes::quad_sphere(4));
-    for preset in DrapeConfig::PRESETS {
+    for preset in presets() {
         let mut drape = Drape::new(pair.input(), short(preset, 20)).unwrap();
         steps(&mut drape, 9);
         changed_on_the_way(&mut drape, &pair);
@@ -69,7 +69,7 @@ fn a_foreign_or_damaged_state_is_refused() {
 fn displacements_are_in_the_coordinates_of_the_target() {
     let pair = Pair::new(shapes::quad_sphere(4));
     let shift = Vector3::new(0.25, -0.5, 1.0);
-    for preset in DrapeConfig::PRESETS {
+    for preset in presets() {
         let mut drape = Drape::new(pair.input(), short(preset, 5)).unwrap();
         drape
             .displace(&VertexData::new(pair.rest.len(), shift))

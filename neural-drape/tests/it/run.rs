@@ -1,9 +1,11 @@
 //! A run improves the fit, repeats to the bit, and starts where it should.
 
-use mesh_core::{shapes, Point3, Positions, TargetSurface, TriangleSoup, Vector3};
+use std::sync::Arc;
+
+use mesh_core::{shapes, Point3, Positions, TriangleSoup, Vector3};
 use neural_drape::{Drape, DrapeConfig};
 
-use crate::setup::{on_ellipsoid, run, short, Pair};
+use crate::setup::{on_ellipsoid, presets, run, short, Pair};
 
 fn mean_distance(x: &Positions, pair: &Pair) -> f64 {
     let hits = pair.target.closest_points(x.as_slice());
@@ -14,7 +16,7 @@ fn mean_distance(x: &Positions, pair: &Pair) -> f64 {
 fn every_preset_starts_at_the_initial_shape_and_comes_closer() {
     for source in [shapes::icosphere(2), shapes::quad_sphere(5)] {
         let pair = Pair::new(source);
-        for preset in DrapeConfig::PRESETS {
+        for preset in presets() {
             let drape = Drape::new(pair.input(), short(preset, 60)).unwrap();
             let start = drape.positions();
             let shift = start
@@ -58,7 +60,7 @@ fn open_sources_and_polygons_are_draped_too() {
 #[test]
 fn same_seed_same_bits_whatever_the_thread_count() {
     let pair = Pair::new(shapes::quad_sphere(6));
-    for preset in DrapeConfig::PRESETS {
+    for preset in presets() {
         let [one, two] = [1, 2].map(|n_threads| {
             let pool = rayon::ThreadPoolBuilder::new()
                 .num_threads(n_threads)
@@ -91,7 +93,7 @@ fn units_place_and_turn_of_the_target_do_not_matter() {
     for p in &mut ellipsoid.positions {
         *p = away(&on_ellipsoid(p));
     }
-    far.target = TriangleSoup::new(ellipsoid).unwrap();
+    far.target = Arc::new(TriangleSoup::new(ellipsoid).unwrap());
     far.initial = near.initial.map(away);
     let (there, _) = run(far.input(), short("standard", 60)).unwrap();
 

@@ -1,13 +1,17 @@
 //! A sphere of quads and an ellipsoid of triangles to drape it over.
 
-use mesh_core::{shapes, Point3, PolygonSoup, Positions, TriangleSoup, Triangulation};
-use neural_drape::{Drape, DrapeConfig, DrapeError, DrapeInput, StepReport};
+use std::sync::Arc;
+
+use mesh_core::{
+    shapes, Point3, PolygonSoup, Positions, TargetSurface, TriangleSoup, Triangulation,
+};
+use neural_drape::{Drape, DrapeConfig, DrapeError, DrapeInput, ParametrizationConfig, StepReport};
 
 pub(crate) struct Pair {
-    pub(crate) triangulation: Triangulation,
-    pub(crate) rest: Positions,
+    pub(crate) triangulation: Arc<Triangulation>,
+    pub(crate) rest: Arc<Positions>,
     pub(crate) initial: Positions,
-    pub(crate) target: TriangleSoup,
+    pub(crate) target: Arc<dyn TargetSurface>,
 }
 
 /// Half axes of the target.
@@ -27,10 +31,10 @@ impl Pair {
             .iter_mut()
             .for_each(|p| *p = on_ellipsoid(p));
         Self {
-            triangulation: Triangulation::new(&mesh, &rest),
+            triangulation: Arc::new(Triangulation::new(&mesh, &rest)),
             initial: rest.map(|p| Point3::from(p.coords * 0.8)),
-            rest,
-            target: TriangleSoup::new(ellipsoid).expect("an ellipsoid is a target"),
+            rest: Arc::new(rest),
+            target: Arc::new(TriangleSoup::new(ellipsoid).expect("an ellipsoid is a target")),
         }
     }
 
@@ -43,6 +47,16 @@ impl Pair {
             landmarks: &[],
         }
     }
+}
+
+/// The presets that this build can run.
+pub(crate) fn presets() -> impl Iterator<Item = &'static str> {
+    let is_there = |preset: &&str| {
+        let config = DrapeConfig::named(preset).expect("a known preset");
+        cfg!(feature = "network")
+            || matches!(config.parametrization, ParametrizationConfig::Vertices(_))
+    };
+    DrapeConfig::PRESETS.into_iter().filter(is_there)
 }
 
 /// A preset with a short run.

@@ -1,12 +1,16 @@
 //! The readers that are not of mesh files.
 
 use mesh_core::{shapes, Point3};
+use mesh_draping::{landmarks, Preset, Seams, Source};
 
 /// Reads a landmark file for a small mesh.
+///
+/// # Panics
+/// If a landmark that was read has a place that is not finite.
 pub fn read_landmarks(text: &str) {
-    let source = shapes::open_grid(2, 2);
+    let source = Source::of_soup(shapes::open_grid(2, 2), Seams::EXACT).expect("a grid is a mesh");
     let target = [Point3::new(1.0, 2.0, 3.0), Point3::new(4.0, 5.0, 6.0)];
-    if let Ok(landmarks) = drape_cli::read_landmarks(text, Some("a\nb\n"), source, &target) {
+    if let Ok(landmarks) = landmarks::parse(text, Some("a\nb\n"), &source, &target) {
         for landmark in landmarks {
             assert!(landmark.target.iter().all(|c| c.is_finite()));
         }
@@ -16,10 +20,13 @@ pub fn read_landmarks(text: &str) {
 /// Reads a settings file, and what it settles on once more.
 ///
 /// # Panics
-/// If the settings that were read are not written.
+/// If the settings that were read are not those that are written.
 pub fn read_settings(text: &str) {
-    if let Ok(config) = drape_cli::read_settings(text) {
-        let _ = config.check();
+    if let Ok(preset) = Preset::from_toml(text) {
+        let again = Preset::from_toml(&preset.to_toml()).expect("settings read what they write");
+        if preset.drape.check().is_ok() {
+            assert_eq!(again, preset);
+        }
     }
 }
 

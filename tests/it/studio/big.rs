@@ -84,11 +84,11 @@ fn large_shapes_are_interactive() {
     for k in 0..4 {
         let at = [12 * k - 30, 9 * (k % 3) - 9];
         clicks.push(click(&page, "source", at));
-        let before = page.value("studio.frame.serial");
+        let before = page.value("studio.shown.serial");
         clicks.push(click(&page, "target", at));
         let edited = Instant::now();
         // The result is at the new landmark, and was not before.
-        page.wait(&format!("studio.frame.serial !== {before} && studio.stage.misses(studio.state.landmarks.slice(-1)).values().next().value < 0.004"));
+        page.wait(&format!("studio.shown.serial !== {before} && studio.stage.misses(studio.state.landmarks.slice(-1)).values().next().value < 0.004"));
         previews.push(edited.elapsed().as_secs_f64());
     }
     let worst = |times: &[f64]| times.iter().copied().fold(0.0, f64::max);

@@ -11,6 +11,8 @@ use serde_json::{json, Value};
 use tempfile::TempDir;
 use tungstenite::{Message, WebSocket};
 
+use crate::data::skip;
+
 /// Whatever is waited for comes within this time on a slow machine.
 const PATIENCE: Duration = Duration::from_secs(150);
 /// Work without a graphics card, leave the network alone.
@@ -46,7 +48,6 @@ pub(crate) struct Page {
 }
 
 /// A browser, or none where none is installed, which is said aloud; in CI that is an error.
-#[allow(clippy::print_stderr, reason = "a skipped test says so")]
 pub(crate) fn browser() -> Option<Rc<Browser>> {
     let names = ["chromium", "chromium-browser", "google-chrome"];
     let folders: Vec<PathBuf> = std::env::var_os("PATH")
@@ -62,7 +63,7 @@ pub(crate) fn browser() -> Option<Rc<Browser>> {
                 std::env::var_os("CI").is_none(),
                 "no browser is installed; install chromium"
             );
-            eprintln!("SKIPPED: no chromium is installed, so nothing was tested in a browser");
+            skip("no chromium is installed, so nothing was tested in a browser");
             None
         }
     }
@@ -277,8 +278,8 @@ impl Page {
     }
 
     /// Drops a file from the desktop at a place.
-    pub(crate) fn drop_file(&self, [x, y]: [f64; 2], file: &Path) {
-        let data = json!({ "items": [], "files": [file], "dragOperationsMask": 1 });
+    pub(crate) fn drop_files(&self, [x, y]: [f64; 2], files: &[PathBuf]) {
+        let data = json!({ "items": [], "files": files, "dragOperationsMask": 1 });
         for kind in ["dragEnter", "dragOver", "drop"] {
             let event = json!({ "type": kind, "x": x, "y": y, "data": data });
             self.call("Input.dispatchDragEvent", event);

@@ -48,7 +48,7 @@ fn the_result_and_the_map_are_those_of_the_command_line() {
     ] {
         let place = Workplace::new();
         let (server, mut wire) = studio(&place, settings);
-        ask(&mut wire, json!({ "do": "drape" }));
+        ask(&mut wire, json!({ "command": "drape" }));
         status(&mut wire, "finished");
         place
             .drape("transfer source.obj target.ply --landmarks landmarks.json --config own.toml -o out.obj --warp out.drape")
@@ -64,13 +64,13 @@ fn the_result_and_the_map_are_those_of_the_command_line() {
 fn a_drape_goes_on_after_its_end() {
     let place = Workplace::new();
     let (server, mut wire) = studio(&place, "[[stages]]\nn_iterations = 12\n");
-    assert!(wire.ask(json!({ "do": "extend" }))["error"].is_string());
-    ask(&mut wire, json!({ "do": "drape" }));
+    assert!(wire.ask(json!({ "command": "extend" }))["error"].is_string());
+    ask(&mut wire, json!({ "command": "drape" }));
     let state = status(&mut wire, "finished");
     assert_eq!(state["run"]["n_more"], 4);
     let first = download(&server, "result");
     for n in [16, 20] {
-        ask(&mut wire, json!({ "do": "extend" }));
+        ask(&mut wire, json!({ "command": "extend" }));
         let state =
             wire.state(|s| s["run"]["status"] == "finished" && s["run"]["iteration"] != n - 4);
         assert_eq!(state["run"]["iteration"], n);
@@ -79,32 +79,66 @@ fn a_drape_goes_on_after_its_end() {
     assert_replayed(&place, &server);
 }
 
+/// What is told to be impossible is refused, and changes nothing.
+#[test]
+fn what_cannot_be_done_is_refused() {
+    let place = Workplace::new();
+    let (_server, mut wire) = studio(&place, "[[stages]]\nn_iterations = 100000\n");
+    let assert_refused = |wire: &mut Wire, state: &Value, n_possible: usize| {
+        let can = state["can"]
+            .as_object()
+            .expect("the state says what can be done");
+        let commands = [
+            "drape", "pause", "resume", "step", "stop", "extend", "reset",
+        ];
+        let refused: Vec<&str> = commands.into_iter().filter(|c| can[*c] == false).collect();
+        assert_eq!(refused.len(), commands.len() - n_possible, "{can:?}");
+        for command in refused {
+            let answer = wire.ask(json!({ "command": command }));
+            assert!(answer["error"].is_string(), "{command}: {answer}");
+        }
+    };
+    let state = wire.state(|_| true);
+    assert_refused(&mut wire, &state, 2);
+    ask(&mut wire, json!({ "command": "drape" }));
+    let state = status(&mut wire, "running");
+    assert_refused(&mut wire, &state, 3);
+    ask(&mut wire, json!({ "command": "stop" }));
+    let state = status(&mut wire, "stopped");
+    assert_refused(&mut wire, &state, 5);
+    assert_eq!(state["discards"], json!(["drape", "reset"]));
+    ask(&mut wire, json!({ "command": "resume" }));
+    status(&mut wire, "running");
+    ask(&mut wire, json!({ "command": "pause" }));
+    let state = status(&mut wire, "paused");
+    assert_refused(&mut wire, &state, 4);
+}
+
 #[test]
 fn parts_are_switched_on_the_way() {
     let place = Workplace::new();
     let (server, mut wire) = studio(&place, "[[stages]]\nn_iterations = 100000\n");
-    ask(&mut wire, json!({ "do": "drape" }));
+    ask(&mut wire, json!({ "command": "drape" }));
     status(&mut wire, "running");
 
     // A running drape takes it at once.
-    let part =
-        |name: &str, treatment: &str| json!({ "do": "part", "name": name, "treatment": treatment });
+    let part = |name: &str, treatment: &str| json!({ "edit": { "do": "part", "name": name, "treatment": treatment } });
     ask(&mut wire, part("side1", "free"));
     let state =
         wire.state(|s| s["parts"]["free"][0] == "side1" && s["run"]["pending_parts"] == false);
     assert_eq!(state["run"]["status"], "running");
 
     // A paused one takes it with the next step; until then it can be undone.
-    ask(&mut wire, json!({ "do": "pause" }));
+    ask(&mut wire, json!({ "command": "pause" }));
     status(&mut wire, "paused");
     ask(&mut wire, part("side2", "rigid"));
     wire.state(|s| s["run"]["pending_parts"] == true);
-    ask(&mut wire, json!({ "do": "undo" }));
+    ask(&mut wire, json!({ "edit": { "do": "undo" } }));
     wire.state(|s| s["run"]["pending"] == false);
-    ask(&mut wire, json!({ "do": "redo" }));
+    ask(&mut wire, json!({ "edit": { "do": "redo" } }));
     let state = wire.state(|s| s["run"]["pending_parts"] == true);
     let paused_at = state["run"]["iteration"].as_u64().unwrap();
-    ask(&mut wire, json!({ "do": "step" }));
+    ask(&mut wire, json!({ "command": "step" }));
     wire.state(|s| {
         s["run"]["pending"] == false && s["run"]["iteration"].as_u64() == Some(paused_at + 1)
     });
@@ -124,7 +158,7 @@ fn parts_are_switched_on_the_way() {
     let state = status(&mut wire, "paused");
     assert_eq!(state["parts"]["rigid"], json!(["side2"]));
     assert_eq!(state["run"]["pending"], false);
-    ask(&mut wire, json!({ "do": "step" }));
+    ask(&mut wire, json!({ "command": "step" }));
     wire.state(|s| s["run"]["iteration"].as_u64() == Some(paused_at + 2));
     assert_replayed(&place, &server);
 }

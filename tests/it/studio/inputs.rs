@@ -52,13 +52,28 @@ fn files_are_dropped_into_the_page() {
             "studio.state.landmarks.length === 6",
         ),
     ] {
-        page.drop_file(middle(&page, side), &place.path(file));
+        page.drop_files(middle(&page, side), &[place.path(file)]);
         page.wait(until);
     }
     page.wait("studio.views.result.shape && studio.figures.landmark_rms < 0.01");
     assert!(page
         .value("document.querySelector('.is-target-of-drop')")
         .is_null());
+}
+
+#[test]
+fn a_source_a_target_and_landmarks_are_dropped_at_once() {
+    let Some(browser) = browser() else { return };
+    let place = Workplace::new();
+    let server = Server::start(&place.path(""), &[]);
+    let page = Page::open(&browser, &server.url, [1280, 800]);
+    page.wait("studio.state");
+    let files = ["landmarks.json", "source.obj", "target.ply"].map(|name| place.path(name));
+    page.drop_files(middle(&page, "result"), &files);
+    page.wait(
+        "studio.state.source?.name === 'source.obj' && studio.state.target?.name === 'target.ply'",
+    );
+    page.wait("studio.state.landmarks.length === 6");
 }
 
 #[test]

@@ -2,6 +2,7 @@
 
 mod big;
 mod browser;
+mod discard;
 mod going_on;
 mod inputs;
 mod page;

@@ -53,7 +53,7 @@ fn seen(page: &Page, side: &str, place: Place) -> Option<[f64; 2]> {
     let [x, y] = point(&at).map(f64::round);
     let picked = page.value(&format!(
         "(async () => {{ const view = studio.views.of('{side}'); \
-         const hit = await studio.link.ask('pick', {{ side: '{side}', ray: view.ray({{ clientX: {x}, clientY: {y} }}) }}); \
+         const hit = await studio.link.ask('query', {{ do: 'pick', shape: '{side}', ray: view.ray({{ clientX: {x}, clientY: {y} }}) }}); \
          return hit && (hit.target ?? view.shape.place(hit.source).point); }})()"
     ));
     let is_there = !picked.is_null() && distance(&picked, place) < 0.02;
@@ -92,7 +92,7 @@ pub(crate) fn vertex(page: &Page, side: &str, row: u64) -> Place {
 
 /// The positions that the result's view shows.
 pub(crate) fn shown(page: &Page) -> Value {
-    page.value("Array.from(studio.frame.positions)")
+    page.value("Array.from(studio.shown.positions)")
 }
 
 /// A figure that rose above another.

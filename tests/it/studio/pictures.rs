@@ -4,7 +4,8 @@ use std::path::PathBuf;
 
 use super::browser::{browser, Page};
 use super::page::probed;
-use super::server::{horse_wolf, Server};
+use super::server::Server;
+use crate::data::horse_wolf;
 use crate::regions::{head_on_skin, HEAD, SKIN};
 
 #[test]
@@ -55,15 +56,15 @@ fn every_state_can_be_drawn() {
     page.wait("studio.views.result.shape && studio.figures && studio.state.warnings");
     save(&page, "preview");
     page.press("#drape");
-    page.wait("studio.frame.iteration > 60 && studio.figures.iteration > 10");
+    page.wait("studio.shown.iteration > 60 && studio.figures.iteration > 10");
     save(&page, "draping");
     page.press("#pause");
     page.wait("studio.state.run.status === 'paused'");
     drag_away(&page);
-    page.wait("studio.frame.kind === 2");
+    page.wait("studio.shown.kind === 2");
     save(&page, "paused-and-changed");
     page.press("#undo");
-    page.wait("studio.frame.kind === 1");
+    page.wait("studio.shown.kind === 1");
     colours(&page, &save);
     page.press("#settings");
     save(&page, "settings");

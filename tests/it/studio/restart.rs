@@ -24,7 +24,7 @@ fn long() -> (Workplace, Server) {
 fn a_killed_studio_loses_at_most_two_seconds() {
     let (place, server) = long();
     let mut wire = Wire::own(&server);
-    wire.ask(json!({ "do": "drape" }));
+    wire.ask(json!({ "command": "drape" }));
     let progress = |wire: &mut Wire| loop {
         let message = wire.hear().expect("the studio tells how far it is");
         if message["type"] == "progress" {
@@ -57,7 +57,7 @@ fn a_killed_studio_loses_at_most_two_seconds() {
     );
     assert_eq!(state["landmarks"].as_array().map(Vec::len), Some(6));
     // The curves are there from the start on.
-    let curves = wire.ask(json!({ "do": "curves" }));
+    let curves = wire.ask(json!({ "query": { "do": "curves" } }));
     let curves = curves["value"].as_array().expect("curves");
     let loss = curves.iter().find(|c| c["name"] == "loss");
     let points = &loss.expect("a curve of the loss")["points"];
@@ -66,7 +66,7 @@ fn a_killed_studio_loses_at_most_two_seconds() {
     assert_eq!(last[0], json!(iteration - 1));
 
     // It goes on, and what comes out can still be done again to the bit.
-    wire.ask(json!({ "do": "step" }));
+    wire.ask(json!({ "command": "step" }));
     let state = wire.state(|s| s["run"]["iteration"] == json!(iteration + 1));
     assert_eq!(state["run"]["status"], "paused");
     let exported = download(&server, "result");
@@ -76,15 +76,39 @@ fn a_killed_studio_loses_at_most_two_seconds() {
 }
 
 #[test]
+fn a_finished_drape_comes_back_as_finished() {
+    let place = Workplace::new();
+    place.write("short.toml", "[[stages]]\nn_iterations = 12\n");
+    let arguments = "source.obj target.ply --landmarks landmarks.json --config short.toml";
+    let arguments: Vec<&str> = arguments.split(' ').collect();
+    let server = Server::start(&place.path(""), &arguments);
+    let mut wire = Wire::own(&server);
+    wire.ask(json!({ "command": "drape" }));
+    wire.state(|s| s["run"]["status"] == "finished");
+    let exported = download(&server, "result");
+    server.kill();
+
+    let server = Server::start(&place.path(""), &["source.obj", "target.ply"]);
+    let mut wire = Wire::own(&server);
+    let state = wire.state(|s| s["run"]["status"] != "starting");
+    assert_eq!(state["run"]["status"], "finished");
+    assert_eq!(state["run"]["iteration"], 12);
+    assert!(download(&server, "result") == exported);
+    // It can go on from there.
+    wire.ask(json!({ "command": "extend" }));
+    wire.state(|s| s["run"]["status"] == "finished" && s["run"]["iteration"] == 16);
+}
+
+#[test]
 fn a_page_that_is_loaded_again_comes_back_to_the_running_drape() {
     let Some(browser) = browser() else { return };
     let (_place, server) = long();
     let page = Page::open(&browser, &server.url, [1280, 800]);
     page.wait("studio.views.result.shape");
     page.press("#drape");
-    page.wait("studio.frame.iteration > 3");
+    page.wait("studio.shown.iteration > 3");
     page.go(&server.url);
-    page.wait("studio.frame.iteration > 6 && studio.chart.curves.get('loss').length > 3");
+    page.wait("studio.shown.iteration > 6 && studio.chart.curves.get('loss').length > 3");
     assert_eq!(page.value("studio.state.landmarks.length"), json!(6));
     assert_eq!(page.value("studio.state.run.status"), json!("running"));
 
@@ -92,8 +116,8 @@ fn a_page_that_is_loaded_again_comes_back_to_the_running_drape() {
     page.value("studio.link.socket.close(), true");
     page.wait("!document.getElementById('offline').hidden");
     page.wait("document.getElementById('offline').hidden");
-    let seen = page.value("studio.frame.iteration");
-    page.wait(&format!("studio.frame.iteration > {seen}"));
+    let seen = page.value("studio.shown.iteration");
+    page.wait(&format!("studio.shown.iteration > {seen}"));
 }
 
 #[test]

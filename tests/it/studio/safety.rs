@@ -95,9 +95,11 @@ fn malformed_and_huge_messages_do_no_harm() {
         "null",
         "[1, 2]",
         "{\"id\": 1}",
-        "{\"id\": -1, \"do\": \"undo\"}",
-        "{\"id\": 1, \"do\": \"nonsense\"}",
-        "{\"id\": 1, \"do\": \"place\", \"side\": \"up\"}",
+        "{\"id\": -1, \"edit\": {\"do\": \"undo\"}}",
+        "{\"id\": 1, \"edit\": {\"do\": \"nonsense\"}}",
+        "{\"id\": 1, \"command\": \"undo\"}",
+        "{\"id\": 1, \"query\": {\"do\": \"clear\"}}",
+        "{\"id\": 1, \"edit\": {\"do\": \"place\", \"shape\": \"up\"}}",
         "{\"heat\": \"none\"}",
         deep.as_str(),
     ];
@@ -112,12 +114,12 @@ fn malformed_and_huge_messages_do_no_harm() {
         assert!(told["error"].is_string(), "{text:.40}: {told}");
     }
     for request in [
-        json!({ "do": "delete", "landmark": 77 }),
-        json!({ "do": "drag", "landmark": 77, "side": "source", "ray": null, "done": true }),
-        json!({ "do": "mirror", "axes": [0, 7] }),
-        json!({ "do": "preset", "name": "best\"\nseed = 1" }),
-        json!({ "do": "settings", "toml": "[[stages]]\nn_iterations = -1" }),
-        json!({ "do": "pause" }),
+        json!({ "edit": { "do": "delete", "landmark": 77 } }),
+        json!({ "edit": { "do": "drag", "landmark": 77, "shape": "source", "ray": null, "done": true } }),
+        json!({ "edit": { "do": "mirror", "axes": [0, 7] } }),
+        json!({ "edit": { "do": "preset", "name": "best\"\nseed = 1" } }),
+        json!({ "edit": { "do": "settings", "toml": "[[stages]]\nn_iterations = -1" } }),
+        json!({ "command": "pause" }),
     ] {
         let answer = wire.ask(request.clone());
         assert!(answer["error"].is_string(), "{request}: {answer}");
@@ -129,7 +131,7 @@ fn malformed_and_huge_messages_do_no_harm() {
         json!([0.0, 1.0, 0.0]),
     ] {
         let ray = json!({ "origin": [1e300, 0.0, 9.0], "direction": direction, "spread": -1.0 });
-        let answer = wire.ask(json!({ "do": "place", "side": "source", "ray": ray }));
+        let answer = wire.ask(json!({ "edit": { "do": "place", "shape": "source", "ray": ray } }));
         assert!(
             answer["value"].is_null() && answer["error"].is_null(),
             "{answer}"
@@ -139,11 +141,11 @@ fn malformed_and_huge_messages_do_no_harm() {
     // More than a page may send ends its connection, and no other.
     let mut other = Wire::own(&server);
     wire.send(&format!(
-        "{{\"id\": 1, \"do\": \"settings\", \"toml\": \"{}\"}}",
+        "{{\"id\": 1, \"edit\": {{\"do\": \"settings\", \"toml\": \"{}\"}}}}",
         "x".repeat(4 << 20)
     ));
     while wire.hear().is_some() {}
-    let answer = other.ask(json!({ "do": "undo" }));
+    let answer = other.ask(json!({ "query": { "do": "curves" } }));
     assert!(answer["error"].is_null(), "{answer}");
 }
 
@@ -154,20 +156,22 @@ fn a_thousand_rapid_clicks_and_two_tabs_do_no_harm() {
     for k in 0..500 {
         let at = |n: u32| 0.4 * (f64::from(k * n % 17) / 8.0 - 1.0);
         for (wire, side) in [(&mut one, "source"), (&mut two, "target")] {
-            wire.post(json!({ "do": "place", "side": side, "ray": ray(at(3), at(5)) }));
+            wire.post(
+                json!({ "edit": { "do": "place", "shape": side, "ray": ray(at(3), at(5)) } }),
+            );
         }
     }
     let settled = one.state(|s| s["landmarks"].as_array().is_some_and(|l| l.len() > 10));
     assert!(settled["landmarks"].as_array().unwrap().len() <= 1000);
     for wire in [&mut one, &mut two] {
-        let answer = wire.ask(json!({ "do": "undo" }));
+        let answer = wire.ask(json!({ "edit": { "do": "undo" } }));
         assert!(answer["error"].is_null(), "{answer}");
     }
     // Both tabs end with the same landmarks.
-    one.ask(json!({ "do": "clear" }));
+    one.ask(json!({ "edit": { "do": "clear" } }));
     for wire in [&mut one, &mut two] {
         let state = wire.state(|s| s["landmarks"].as_array().is_some_and(Vec::is_empty));
-        assert!(state["can_undo"].as_bool().unwrap());
+        assert!(state["can"]["undo"].as_bool().unwrap());
     }
     wait_for("the session file", || {
         let text = std::fs::read_to_string(place.path("session.json")).ok()?;

@@ -1,7 +1,7 @@
 //! The studio as a process of its own.
 
 use std::io::{BufRead as _, BufReader};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::{Child, Command, Stdio};
 
 /// A running studio; it is killed with this.
@@ -56,19 +56,4 @@ impl Drop for Server {
         drop(self.child.kill());
         drop(self.child.wait());
     }
-}
-
-/// The authors' own pair; none, which is said aloud, where it is not there.
-#[allow(clippy::print_stderr, reason = "a skipped test says so")]
-pub(crate) fn horse_wolf() -> Option<PathBuf> {
-    let data = std::env::var_os("DRAPE_DATA").map_or_else(
-        || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/data"),
-        PathBuf::from,
-    );
-    let pair = data.join("pairs/horse_wolf");
-    if pair.is_dir() {
-        return Some(pair);
-    }
-    eprintln!("SKIPPED: {} is not there", pair.display());
-    None
 }

@@ -7,7 +7,8 @@ use serde_json::Value;
 
 use super::browser::{browser, wait_for, Page};
 use super::page::{find, mark, n_landmarks, number, shown, vertex, Place};
-use super::server::{horse_wolf, Server};
+use super::server::Server;
+use crate::data::horse_wolf;
 use crate::support::run;
 
 /// Enough to see Q rise and to pause in time.
@@ -88,7 +89,7 @@ fn a_user_drapes_a_horse_over_a_wolf() {
     // Add one, drag one, resume.
     let (on_source, on_target) = pairs[1];
     mark(&page, on_source, on_target);
-    page.wait("studio.state.run.pending && studio.frame.kind === 2");
+    page.wait("studio.state.run.pending && studio.shown.kind === 2");
     drag_on_target(&page, pairs[7].1);
     page.press("#resume");
     page.wait("studio.state.run.status === 'finished'");
@@ -99,10 +100,10 @@ fn a_user_drapes_a_horse_over_a_wolf() {
     // Undo and redo the drag and the landmark; the result is the drape's all the while.
     page.press("#undo");
     page.press("#undo");
-    page.wait("studio.state.landmarks.at(-1).target === null && studio.state.can_redo");
+    page.wait("studio.state.landmarks.at(-1).target === null && studio.state.can.redo");
     page.press("#redo");
     page.press("#redo");
-    page.wait("!studio.state.can_redo && !studio.state.run.pending && studio.frame.kind === 1");
+    page.wait("!studio.state.can.redo && !studio.state.run.pending && studio.shown.kind === 1");
 
     // What is exported is what the command line makes of the session, to the byte.
     let exported = download(&page, "result", "draped-source.obj", &browser.downloads());
@@ -128,7 +129,7 @@ fn drag_on_target(page: &Page, place: Place) {
     wait_for("the landmark to move", || {
         (page.value("studio.state.landmarks.map((l) => l.target.point)") != before).then_some(())
     });
-    page.wait("studio.dragging === null && studio.state.can_undo");
+    page.wait("studio.dragging === null && studio.state.can.undo");
 }
 
 /// What a link of the export menu gives.

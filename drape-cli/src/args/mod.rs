@@ -1,0 +1,11 @@
+//! Options that several commands share.
+
+mod inputs;
+mod parts;
+mod settings;
+mod view;
+
+pub(crate) use inputs::{read_truth, Inputs, MorphArgs, Morphing, WeldArgs};
+pub(crate) use parts::PartArgs;
+pub(crate) use settings::{InitialArg, SettingsArgs};
+pub(crate) use view::ViewArgs;

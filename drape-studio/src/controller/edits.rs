@@ -1,0 +1,126 @@
+//! Edits of landmarks and settings.
+
+use anyhow::{ensure, Context as _, Result};
+use mesh_core::Landmark;
+use mesh_draping::Preset;
+use serde_json::Value;
+
+use super::can::Action;
+use super::{Controller, Edit};
+use crate::session::{Mark, MAX_MARKS};
+
+/// Longest name of a landmark, in characters.
+const MAX_NAME: usize = 80;
+
+impl Controller {
+    /// Makes an edit; the number of the landmark where a place is marked.
+    pub(super) fn make(&mut self, edit: Edit) -> Result<Value> {
+        if !matches!(edit, Edit::Drag { .. }) {
+            self.finish_drag();
+        }
+        match edit {
+            Edit::Place { shape, ray } => return self.place(shape, &ray),
+            Edit::Drag {
+                landmark,
+                shape,
+                ray,
+                done,
+            } => self.drag(landmark, shape, ray.as_ref(), done)?,
+            Edit::Delete { landmark } => {
+                self.find(landmark)?;
+                self.session.edit(|d| d.marks.retain(|m| m.id != landmark));
+            }
+            Edit::Rename { landmark, name } => {
+                let name: String = name.trim().chars().take(MAX_NAME).collect();
+                self.change_mark(landmark, |m| m.name = name)?;
+            }
+            Edit::Kind { landmark, kind } => self.change_mark(landmark, |m| m.kind = kind)?,
+            Edit::Clear => {
+                self.situation().check(Action::Clear)?;
+                self.session.edit(|d| d.marks.clear());
+            }
+            Edit::Mirror { axes } => {
+                let is_axis = axes.iter().flatten().all(|&axis| axis < 3);
+                ensure!(is_axis, "an axis is 0, 1 or 2");
+                self.session.edit(|d| d.mirror = axes);
+            }
+            Edit::Part { name, treatment } => self.treat(&name, treatment)?,
+            Edit::Preset { name } => self.choose_preset(&name)?,
+            Edit::Seed { seed } => {
+                let mut preset = self.preset.clone();
+                preset.drape.seed = u64::from(seed);
+                self.set_preset(&preset);
+            }
+            Edit::Settings { toml } => self.set_preset(&Preset::from_toml(&toml)?),
+            Edit::Undo => {
+                self.situation().check(Action::Undo)?;
+                self.session.undo();
+            }
+            Edit::Redo => {
+                self.situation().check(Action::Redo)?;
+                self.session.redo();
+            }
+        }
+        self.edited();
+        Ok(Value::Null)
+    }
+
+    /// After an edit: settings as the document has them, the preview, every page.
+    pub(super) fn edited(&mut self) {
+        // Settings that cannot be read never come into the document.
+        if let Ok(preset) = Preset::from_toml(&self.session.document.settings) {
+            self.preset = preset;
+        }
+        if self.dragged_from.is_none() {
+            self.pass_on();
+        }
+        self.ask_preview();
+        self.changed();
+    }
+
+    /// A preset, with the seed as it is.
+    fn choose_preset(&mut self, name: &str) -> Result<()> {
+        let mut preset = Preset::named(name)?;
+        preset.drape.seed = self.preset.drape.seed;
+        self.set_preset(&preset);
+        Ok(())
+    }
+
+    fn set_preset(&mut self, preset: &Preset) {
+        let settings = preset.to_toml();
+        self.session.edit(|d| d.settings = settings);
+    }
+
+    pub(super) fn find(&self, id: u32) -> Result<&Mark> {
+        let mut marks = self.session.document.marks.iter();
+        marks
+            .find(|m| m.id == id)
+            .with_context(|| format!("there is no landmark {id}; it may have been deleted"))
+    }
+
+    fn change_mark(&mut self, id: u32, change: impl FnOnce(&mut Mark)) -> Result<()> {
+        self.find(id)?;
+        self.session.edit(|d| {
+            if let Some(mark) = d.marks.iter_mut().find(|m| m.id == id) {
+                change(mark);
+            }
+        });
+        Ok(())
+    }
+
+    /// Takes the landmarks of a file.
+    pub(super) fn adopt(&mut self, landmarks: &[Landmark]) -> Result<()> {
+        ensure!(
+            landmarks.len() <= MAX_MARKS,
+            "{MAX_MARKS} landmarks are enough"
+        );
+        self.finish_drag();
+        let marks: Vec<Mark> = landmarks
+            .iter()
+            .map(|l| Mark::of(self.session.fresh_id(), l))
+            .collect();
+        self.session.edit(|d| d.marks = marks);
+        self.edited();
+        Ok(())
+    }
+}

@@ -1,0 +1,109 @@
+//! What a page may ask for: a query changes nothing, an edit changes the document and can be undone, a command drives
+//! the drape.
+
+use mesh_draping::Treatment;
+use serde::{Deserialize, Serialize};
+
+use crate::pick::Ray;
+use crate::session::MarkKind;
+
+/// Which shape a ray is aimed at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub(crate) enum Shape {
+    Source,
+    Target,
+    /// The source where it is shown now: a place on it is a place of the source.
+    Result,
+}
+
+/// One request, by its kind: `{"edit": {"do": "delete", "landmark": 3}}`, `{"command": "pause"}`.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub(crate) enum Request {
+    Query(Query),
+    Edit(Edit),
+    Command(Command),
+}
+
+/// What is asked without changing anything.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(tag = "do", rename_all = "snake_case", deny_unknown_fields)]
+pub(crate) enum Query {
+    /// What is under the pointer.
+    Pick { shape: Shape, ray: Ray },
+    /// The triangles of a part, as ranges of rows.
+    PartTriangles { name: String },
+    /// The curves of the drape so far.
+    Curves,
+}
+
+/// A change of landmarks, parts or settings.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(tag = "do", rename_all = "snake_case", deny_unknown_fields)]
+pub(crate) enum Edit {
+    /// Marks a place: completes the landmark that is half made, or begins one.
+    Place {
+        shape: Shape,
+        ray: Ray,
+    },
+    /// Moves a landmark on one shape; one edit from the first ray to the one that is `done`.
+    Drag {
+        landmark: u32,
+        shape: Shape,
+        ray: Option<Ray>,
+        done: bool,
+    },
+    Delete {
+        landmark: u32,
+    },
+    Rename {
+        landmark: u32,
+        name: String,
+    },
+    Kind {
+        landmark: u32,
+        kind: MarkKind,
+    },
+    /// Deletes all landmarks.
+    Clear,
+    /// Axes of source and target across which landmarks are placed twice.
+    Mirror {
+        axes: Option<[usize; 2]>,
+    },
+    /// How a part of the source is treated.
+    Part {
+        name: String,
+        treatment: Treatment,
+    },
+    Preset {
+        name: String,
+    },
+    Seed {
+        seed: u32,
+    },
+    Settings {
+        toml: String,
+    },
+    Undo,
+    Redo,
+}
+
+/// What drives the drape.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub(crate) enum Command {
+    /// Starts a drape from the landmarks as they are; one that is over is thrown away.
+    Drape,
+    Pause,
+    /// Goes on, with the landmarks and parts as they are.
+    Resume,
+    /// One iteration; begins a drape where there is none.
+    Step,
+    /// Ends the drape where it is and keeps the result.
+    Stop,
+    /// Gives a drape that is over more iterations, and goes on.
+    Extend,
+    /// Throws the drape away.
+    Reset,
+}

@@ -1,0 +1,235 @@
+//! Source and target as the studio holds them: what is draped, with what the page shows and picks on.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use anyhow::Result;
+use mesh_core::io::NamedFaces;
+use mesh_core::{
+    Location, MeshPoint, Point3, PolygonSoup, Positions, TargetSurface, TriangleBvh, Triangulation,
+    UnitFrame, Vector3, VertexData, VertexId,
+};
+use mesh_draping::landmarks::{source_symmetry, target_symmetry};
+use mesh_draping::{Source, Target};
+
+use crate::buffers::DisplayBuffers;
+use crate::pick::{self, Ray};
+use crate::shapes::Shapes;
+
+/// More parts than this are not listed.
+const MAX_PARTS: usize = 200;
+
+/// A source and a target.
+#[derive(Clone)]
+pub(crate) struct DisplayedPair {
+    pub(crate) source: Arc<DisplayedSource>,
+    pub(crate) target: Arc<DisplayedTarget>,
+    /// What is draped.
+    pub(crate) shapes: Shapes,
+}
+
+/// A mesh to deform.
+pub(crate) struct DisplayedSource {
+    pub(crate) source: Source,
+    /// The frame of its view.
+    pub(crate) frame: UnitFrame,
+    pub(crate) buffers: DisplayBuffers,
+    /// The axis across which it is most nearly symmetric.
+    pub(crate) symmetry: usize,
+}
+
+/// A shape to drape over.
+pub(crate) struct DisplayedTarget {
+    pub(crate) target: Target,
+    /// The frame of its view, and of the result's.
+    pub(crate) frame: UnitFrame,
+    pub(crate) buffers: DisplayBuffers,
+    /// The axis across which it is most nearly symmetric.
+    pub(crate) symmetry: usize,
+    picked: PickSurface,
+}
+
+/// What is seen and picked: all that is in the file.
+enum PickSurface {
+    Triangles(TriangleBvh),
+    Points(Vec<Point3>),
+}
+
+impl DisplayedPair {
+    pub(crate) fn new(source: Arc<DisplayedSource>, target: Arc<DisplayedTarget>) -> Self {
+        Self {
+            shapes: Shapes::new(source.source.clone(), target.target.clone()),
+            source,
+            target,
+        }
+    }
+}
+
+impl DisplayedSource {
+    /// Reads a source.
+    pub(crate) fn read(path: &Path) -> Result<Self> {
+        Ok(Self::new(Source::read(path)?))
+    }
+
+    fn new(source: Source) -> Self {
+        let frame = UnitFrame::of(source.bvh().bounds());
+        let mesh = source.mesh();
+        let row = |v: &VertexId| v.index() as u32;
+        let faces = mesh
+            .faces()
+            .map(|f| mesh.face_vertices(f).iter().map(row).collect());
+        let soup = PolygonSoup {
+            positions: source.rest().as_slice().to_vec(),
+            faces: faces.collect(),
+        };
+        let triangles = source.triangulation().triangles();
+        let triangles = triangles.iter().map(|t| t.map(|v| row(&v)));
+        Self {
+            buffers: DisplayBuffers::of_mesh(&frame, &soup, triangles.collect()),
+            symmetry: source_symmetry(&source).axis,
+            frame,
+            source,
+        }
+    }
+
+    /// The groups, objects and materials of the file, each name once.
+    pub(crate) fn parts(&self) -> Vec<&NamedFaces> {
+        let mut parts: Vec<&NamedFaces> = Vec::new();
+        for named in self.named_faces() {
+            let is_known = parts.iter().any(|p| p.name == named.name);
+            if !is_known && parts.len() < MAX_PARTS {
+                parts.push(named);
+            }
+        }
+        parts
+    }
+
+    fn named_faces(&self) -> impl Iterator<Item = &NamedFaces> {
+        let contents = self.source.file().map(|file| file.contents());
+        let lists = contents.map(|c| [&c.groups, &c.objects, &c.materials]);
+        lists.into_iter().flatten().flatten()
+    }
+
+    /// The triangles of the faces that have a name, as ranges of rows.
+    pub(crate) fn part_triangles(&self, name: &str) -> Vec<[usize; 2]> {
+        let (t, n_faces) = (self.source.triangulation(), self.source.mesh().n_faces());
+        // Triangles are in the order of their faces.
+        let mut first = vec![0; n_faces + 1];
+        for row in 0..t.len() {
+            first[t.parent(row).index() + 1] += 1;
+        }
+        for face in 1..first.len() {
+            first[face] += first[face - 1];
+        }
+        let end = |face: usize| first[face.min(n_faces)];
+        let named = self.named_faces().filter(|n| n.name == name);
+        let ranges = named.flat_map(|n| &n.faces);
+        ranges.map(|r| [end(r.start), end(r.end)]).collect()
+    }
+
+    /// The triangles all of whose corners are among some vertices, as ranges of rows.
+    pub(crate) fn triangles_within(&self, vertices: &[VertexId]) -> Vec<[usize; 2]> {
+        let mut is_in = VertexData::new(self.source.rest().len(), false);
+        vertices.iter().for_each(|&v| is_in[v] = true);
+        let triangles = self.source.triangulation().triangles().iter().enumerate();
+        let within = triangles.filter(|(_, t)| t.iter().all(|&v| is_in[v]));
+        let mut ranges: Vec<[usize; 2]> = Vec::new();
+        for (row, _) in within {
+            match ranges.last_mut() {
+                Some([_, end]) if *end == row => *end += 1,
+                _ => ranges.push([row, row + 1]),
+            }
+        }
+        ranges
+    }
+
+    /// The first place that a ray in the frame of the view meets, at rest.
+    pub(crate) fn pick(&self, ray: &Ray) -> Option<MeshPoint> {
+        let location = pick::first_hit(self.source.bvh(), &self.frame, ray)?;
+        self.source.place(location)
+    }
+
+    /// The hierarchy of the triangles with the vertices at `x`.
+    pub(crate) fn moved_bvh(&self, x: &Positions) -> TriangleBvh {
+        let mut bvh = self.source.bvh().clone();
+        bvh.refit(self.source.triangulation().corners(x));
+        bvh
+    }
+}
+
+impl DisplayedTarget {
+    /// Reads a target; a file without faces is a cloud.
+    pub(crate) fn read(path: &Path) -> Result<Self> {
+        Self::new(Target::read(path)?)
+    }
+
+    fn new(target: Target) -> Result<Self> {
+        let frame = UnitFrame::of(target.judged().bounds());
+        let (picked, buffers) = if target.is_cloud() {
+            cloud(target.vertices(), target.judged().as_ref(), &frame)
+        } else {
+            triangles(target.soup(), &frame)?
+        };
+        Ok(Self {
+            symmetry: target_symmetry(&target).axis,
+            picked,
+            frame,
+            buffers,
+            target,
+        })
+    }
+
+    /// The surface that results are judged by.
+    pub(crate) fn judged(&self) -> &dyn TargetSurface {
+        self.target.judged().as_ref()
+    }
+
+    /// The first place that a ray in the frame of the view meets.
+    pub(crate) fn pick(&self, ray: &Ray) -> Option<Point3> {
+        match &self.picked {
+            PickSurface::Triangles(bvh) => {
+                let location = pick::first_hit(bvh, &self.frame, ray)?;
+                let Location::Triangle { index, barycentric } = location else {
+                    return None;
+                };
+                let corners = bvh.triangle(index);
+                let sum: Vector3 = (0..3).map(|k| corners[k].coords * barycentric[k]).sum();
+                Some(Point3::from(sum))
+            }
+            PickSurface::Points(points) => pick::front_point(points, &self.frame, ray),
+        }
+    }
+}
+
+fn cloud(
+    points: &[Point3],
+    judged: &dyn TargetSurface,
+    frame: &UnitFrame,
+) -> (PickSurface, DisplayBuffers) {
+    let closest = judged.closest_points(points);
+    let normals: Vec<Vector3> = closest
+        .iter()
+        .map(|c| judged.normal(&c.location).unwrap_or_default())
+        .collect();
+    let buffers = DisplayBuffers::of_cloud(frame, points, &normals);
+    (PickSurface::Points(points.to_vec()), buffers)
+}
+
+fn triangles(soup: &PolygonSoup, frame: &UnitFrame) -> Result<(PickSurface, DisplayBuffers)> {
+    let triangles: Vec<[u32; 3]> = if soup.faces.iter().all(|f| f.len() == 3) {
+        soup.faces.iter().map(|f| [f[0], f[1], f[2]]).collect()
+    } else {
+        let (mesh, rest) = soup.clone().into_halfedge()?;
+        Triangulation::new(&mesh, &rest)
+            .triangles()
+            .iter()
+            .map(|t| t.map(|v| v.index() as u32))
+            .collect()
+    };
+    let corners = triangles
+        .iter()
+        .map(|t| t.map(|v| soup.positions[v as usize]));
+    let bvh = TriangleBvh::new(corners.collect());
+    let buffers = DisplayBuffers::of_mesh(frame, soup, triangles);
+    Ok((PickSurface::Triangles(bvh), buffers))
+}

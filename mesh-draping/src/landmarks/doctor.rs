@@ -1,0 +1,339 @@
+//! Looks at landmarks before a run and finds what is probably wrong with them.
+//!
+//! Thresholds come from the twelve pairs of `data/pairs`: none of them is warned about, and exchanging a left and a
+//! right landmark is found in all but the few cases where the two lie close together.
+
+use mesh_core::{Aabb, Landmark, Point3, Positions, TargetSurface};
+use mesh_init::{point_pairs, PointPair};
+
+use super::finding::Shared;
+use super::{Finding, Label};
+use crate::{Pair, Similarity};
+
+/// Distance from the target, in longest sides of its box, from which a landmark is off the surface.
+const OFF_SURFACE: f64 = 0.02;
+/// Distance, likewise, below which two landmarks are one.
+const SAME_PLACE: f64 = 1e-6;
+/// Share of the misfit that exchanging two landmarks must leave, at most, to suspect that they are exchanged.
+const EXCHANGE_GAIN: f64 = 0.97;
+/// Share of the misfit that a mirror image must leave, at most, to suspect that left and right are exchanged.
+const MIRROR_GAIN: f64 = 0.7;
+/// Share of the misfit that leaving one landmark out must leave, at most, to suspect that it is wrong. Shapes that
+/// truly differ come close: without the tip of its tail, the horse fits the wolf with 0.46 of the misfit.
+const OUTLIER_GAIN: f64 = 0.42;
+/// A landmark is also wrong that is this many times as far from where the others expect it as the others are on the
+/// median, and at least this far: on clean sets of shapes that are much alike the ratio stays below 3.4, and landmarks
+/// moved by 10 % along the surface come to 5 and more.
+const LEFT_OUT_RATIO: f64 = 4.0;
+const LEFT_OUT_LEAST: f64 = 0.04;
+/// It says something only where the others expect each other this well, on the median, in longest sides.
+const MUCH_ALIKE: f64 = 0.03;
+/// Fewer landmarks say too little about each other.
+const ENOUGH_TO_COMPARE: usize = 6;
+/// Fewer than this leave the affine map open.
+const ENOUGH_FOR_AFFINE: usize = 4;
+/// Fewer than this leave large parts without guidance.
+const ENOUGH_TO_GUIDE: usize = 5;
+
+/// Everything suspicious about the landmarks of a pair.
+pub(crate) fn examine(pair: &Pair) -> Vec<Finding> {
+    Case::of(pair).examine()
+}
+
+/// How far each landmark is from where the similarity of all others takes it, in longest sides of the target's box.
+pub fn leave_one_out_residuals(pair: &Pair) -> Vec<f64> {
+    let case = Case::of(pair);
+    case.residuals(&case.pairs)
+}
+
+struct Case<'a> {
+    landmarks: &'a [Landmark],
+    pairs: Vec<PointPair>,
+    target: &'a dyn TargetSurface,
+    /// Longest side of the target's box.
+    side: f64,
+    source_side: f64,
+}
+
+impl<'a> Case<'a> {
+    fn of(pair: &'a Pair) -> Self {
+        let target = pair.target.judged().as_ref();
+        Self::new(&pair.landmarks, pair.source.rest(), target)
+    }
+
+    fn new(landmarks: &'a [Landmark], rest: &Positions, target: &'a dyn TargetSurface) -> Self {
+        Self {
+            landmarks,
+            pairs: point_pairs(landmarks, rest),
+            target,
+            side: target.bounds().longest_side(),
+            source_side: Aabb::of(rest.iter()).longest_side(),
+        }
+    }
+
+    fn examine(&self) -> Vec<Finding> {
+        let mut findings: Vec<Finding> = self.too_few().into_iter().collect();
+        findings.extend(self.off_surface());
+        findings.extend(self.same_places());
+        findings.extend(self.inconsistent());
+        findings
+    }
+
+    fn label(&self, k: usize) -> Label {
+        Label::new(k, self.landmarks[k].name.as_deref())
+    }
+
+    /// Whether there are fewer than it takes. Without any, the pose is searched, and that says what was assumed.
+    fn too_few(&self) -> Option<Finding> {
+        match self.landmarks.len() {
+            0 => None,
+            n if n < ENOUGH_FOR_AFFINE => Some(Finding::TooFew {
+                n,
+                least: ENOUGH_FOR_AFFINE,
+            }),
+            n if n < ENOUGH_TO_GUIDE => Some(Finding::Few { n }),
+            _ => None,
+        }
+    }
+
+    fn off_surface(&self) -> Vec<Finding> {
+        let targets: Vec<Point3> = self.pairs.iter().map(|p| p.target).collect();
+        let closest = self.target.closest_points(&targets);
+        let far = closest
+            .iter()
+            .map(|c| c.distance_squared.sqrt())
+            .enumerate();
+        far.filter(|(_, distance)| *distance > OFF_SURFACE * self.side)
+            .map(|(k, distance)| Finding::OffSurface {
+                landmark: self.label(k),
+                distance: distance / self.side,
+            })
+            .collect()
+    }
+
+    fn same_places(&self) -> Vec<Finding> {
+        let mut findings = Vec::new();
+        for (j, b) in self.pairs.iter().enumerate() {
+            for (i, a) in self.pairs[..j].iter().enumerate() {
+                let same_source = (a.source - b.source).norm() <= SAME_PLACE * self.source_side;
+                let same_target = (a.target - b.target).norm() <= SAME_PLACE * self.side;
+                let on = match (same_source, same_target) {
+                    (true, true) => Shared::Both,
+                    (true, false) => Shared::SourceOnly,
+                    (false, true) => Shared::TargetOnly,
+                    (false, false) => continue,
+                };
+                findings.push(Finding::SamePlace {
+                    a: self.label(i),
+                    b: self.label(j),
+                    on,
+                });
+            }
+        }
+        findings
+    }
+
+    /// Mirror images first, then exchanged pairs, then single landmarks that the others contradict.
+    fn inconsistent(&self) -> Vec<Finding> {
+        if self.pairs.len() < ENOUGH_FOR_AFFINE {
+            return Vec::new();
+        }
+        let straight = Similarity::fit(&self.pairs);
+        let mirrored = Similarity::fit_or_mirror(&self.pairs);
+        if mirrored.is_mirror()
+            && mirrored.rms(&self.pairs) < MIRROR_GAIN * straight.rms(&self.pairs)
+        {
+            return vec![Finding::Mirrored];
+        }
+        let mut pairs = self.pairs.clone();
+        let mut findings = Vec::new();
+        while let Some((i, j)) = exchanged(&pairs).filter(|_| findings.len() < self.pairs.len() / 2)
+        {
+            (pairs[i].target, pairs[j].target) = (pairs[j].target, pairs[i].target);
+            findings.push(Finding::Exchanged {
+                a: self.label(i),
+                b: self.label(j),
+            });
+        }
+        findings.extend(self.outlier(&pairs));
+        findings
+    }
+
+    /// The landmark without which the others fit best, if they then fit far better.
+    fn outlier(&self, pairs: &[PointPair]) -> Option<Finding> {
+        if pairs.len() < ENOUGH_TO_COMPARE {
+            return None;
+        }
+        let without = (0..pairs.len()).map(|k| {
+            let (one, others) = leave_out(pairs, k);
+            let map = Similarity::fit(&others);
+            (map.rms(&others), k, map.miss(&one))
+        });
+        let (rms, k, miss) = without.min_by(|a, b| a.0.total_cmp(&b.0))?;
+        let is_far_better = rms < OUTLIER_GAIN * Similarity::fit(pairs).rms(pairs);
+        let (k, distance) = if is_far_better {
+            (k, miss / self.side)
+        } else {
+            self.unexpected(pairs)?
+        };
+        Some(Finding::Unexpected {
+            landmark: self.label(k),
+            distance,
+        })
+    }
+
+    /// The landmark that the others, agreeing well among themselves, expect elsewhere.
+    fn unexpected(&self, pairs: &[PointPair]) -> Option<(usize, f64)> {
+        let residuals = self.residuals(pairs);
+        let mut sorted = residuals.clone();
+        sorted.sort_by(f64::total_cmp);
+        let median = sorted[sorted.len() / 2];
+        let (k, worst) = residuals
+            .iter()
+            .copied()
+            .enumerate()
+            .max_by(|a, b| a.1.total_cmp(&b.1))?;
+        let is_wrong =
+            median < MUCH_ALIKE && worst > LEFT_OUT_LEAST && worst > LEFT_OUT_RATIO * median;
+        is_wrong.then_some((k, worst))
+    }
+
+    /// Distance of each pair from where the similarity of all others takes it, in longest sides.
+    fn residuals(&self, pairs: &[PointPair]) -> Vec<f64> {
+        let residual = |k| {
+            let (one, others) = leave_out(pairs, k);
+            Similarity::fit(&others).miss(&one) / self.side
+        };
+        (0..pairs.len()).map(residual).collect()
+    }
+}
+
+/// Pair `k`, and the others.
+fn leave_out(pairs: &[PointPair], k: usize) -> (PointPair, Vec<PointPair>) {
+    let mut others = pairs.to_vec();
+    let one = others.remove(k);
+    (one, others)
+}
+
+/// Whether the similarity of all others wants both targets exchanged.
+fn others_agree(pairs: &[PointPair], i: usize, j: usize) -> bool {
+    let others = pairs.iter().enumerate().filter(|&(k, _)| k != i && k != j);
+    let map = Similarity::fit(&others.map(|(_, p)| *p).collect::<Vec<_>>());
+    let (a, b) = (pairs[i], pairs[j]);
+    let exchanged = [
+        PointPair {
+            target: b.target,
+            ..a
+        },
+        PointPair {
+            target: a.target,
+            ..b
+        },
+    ];
+    [a, b]
+        .iter()
+        .zip(&exchanged)
+        .all(|(before, after)| map.miss(after) < map.miss(before))
+}
+
+/// The two pairs whose exchange lowers the misfit most, if it does so by enough.
+fn exchanged(pairs: &[PointPair]) -> Option<(usize, usize)> {
+    if pairs.len() < ENOUGH_FOR_AFFINE + 1 {
+        return None;
+    }
+    let before = Similarity::fit(pairs).rms(pairs);
+    let mut trial = pairs.to_vec();
+    let mut best = (EXCHANGE_GAIN * before, None);
+    for j in 1..pairs.len() {
+        for i in 0..j {
+            (trial[i].target, trial[j].target) = (pairs[j].target, pairs[i].target);
+            let after = Similarity::fit(&trial).rms(&trial);
+            if after < best.0 && others_agree(pairs, i, j) {
+                best = (after, Some((i, j)));
+            }
+            (trial[i].target, trial[j].target) = (pairs[i].target, pairs[j].target);
+        }
+    }
+    best.1
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use mesh_core::{shapes, TriangleSoup, VertexId};
+
+    /// Eight corners of a lopsided box on the target `2 x`, each marked.
+    fn corners() -> (Positions, TriangleSoup, Vec<Landmark>) {
+        let mut soup = shapes::quad_sphere(1);
+        for p in &mut soup.positions {
+            *p = Point3::new(p.x * (1.5 + 0.3 * p.y), p.y, p.z * (0.7 + 0.1 * p.x));
+        }
+        let rest: Positions = soup.positions.iter().copied().collect();
+        soup.positions.iter_mut().for_each(|p| *p *= 2.0);
+        let landmarks = rest
+            .ids()
+            .map(|v: VertexId| Landmark::new(v, rest[v] * 2.0))
+            .collect();
+        (rest, TriangleSoup::new(soup).unwrap(), landmarks)
+    }
+
+    fn findings(change: impl Fn(&mut Vec<Landmark>)) -> Vec<Finding> {
+        let (rest, target, mut landmarks) = corners();
+        change(&mut landmarks);
+        Case::new(&landmarks, &rest, &target).examine()
+    }
+
+    fn label(index: usize) -> Label {
+        Label::new(index, None)
+    }
+
+    #[test]
+    fn good_landmarks_are_left_alone() {
+        assert!(findings(|_| ()).is_empty());
+    }
+
+    #[test]
+    fn each_mistake_is_named() {
+        let swapped = findings(|l| (l[1].target, l[6].target) = (l[6].target, l[1].target));
+        let (a, b) = (label(1), label(6));
+        assert_eq!(swapped, [Finding::Exchanged { a, b }]);
+        assert_eq!(
+            swapped[0].to_string(),
+            "landmark 1 and landmark 6 are probably exchanged"
+        );
+
+        let mirrored = findings(|l| l.iter_mut().for_each(|l| l.target.x = -l.target.x));
+        assert!(mirrored.contains(&Finding::Mirrored));
+
+        let off = findings(|l| l[3].target *= 1.5);
+        assert!(off
+            .iter()
+            .any(|f| matches!(f, Finding::OffSurface { landmark, .. } if *landmark == label(3))));
+
+        let twice = findings(|l| l.push(l[0].clone()));
+        let (a, b, on) = (label(0), label(8), Shared::Both);
+        assert_eq!(twice, [Finding::SamePlace { a, b, on }]);
+
+        let few = findings(|l| l.truncate(3));
+        assert_eq!(few[0], Finding::TooFew { n: 3, least: 4 });
+        assert!(findings(Vec::clear).is_empty());
+    }
+
+    #[test]
+    fn a_contradicting_landmark_is_unexpected() {
+        let wrong = findings(|l| l[2].target = Point3::from(-l[2].target.coords));
+        let is_it =
+            |f: &Finding| matches!(f, Finding::Unexpected { landmark, .. } if landmark.index == 2);
+        assert!(wrong.iter().any(is_it), "{wrong:?}");
+    }
+
+    #[test]
+    fn an_application_may_number_from_one() {
+        let mut found = findings(|l| (l[1].target, l[6].target) = (l[6].target, l[1].target));
+        found[0].labels_mut().for_each(|label| label.index += 1);
+        assert_eq!(
+            found[0].to_string(),
+            "landmark 2 and landmark 7 are probably exchanged"
+        );
+    }
+}

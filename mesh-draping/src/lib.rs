@@ -1,0 +1,75 @@
+//! Mesh draping as one library: from files in memory to the draped mesh with its report.
+//!
+//! ```no_run
+//! use mesh_draping::{landmarks, Preset, Source, Target, Transfer};
+//! # fn main() -> Result<(), mesh_draping::Error> {
+//! let source = Source::read("horse.obj")?;
+//! let target = Target::read("wolf.obj")?;
+//! let landmarks = landmarks::read("pairs.json", &source, &target)?;
+//! let outcome = Transfer::new(&source, &target, &landmarks, Preset::standard()).run()?;
+//! outcome.write("draped.obj")?;
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! | to | call |
+//! |---|---|
+//! | read the mesh to deform | [`Source::read`], [`Source::of_soup`], [`Seams`] |
+//! | read the shape to drape over | [`Target::read`], [`Target::of_soup`], [`Target::of_points`] |
+//! | read, write, check, mirror and suggest landmarks | [`landmarks`] |
+//! | choose the settings | [`Preset`] |
+//! | treat parts in their own way | [`Parts`], [`parts`] |
+//! | drape | [`Transfer::run`] |
+//! | drape step by step, pause, change landmarks, resume | [`Transfer::start`], [`Draping`] |
+//! | drape on a thread of its own | [`Draping::spawn`], [`Background`] |
+//! | use the result | [`Outcome`] |
+//! | deform by landmarks only | [`initial_deformation`] |
+//! | judge any shape of the source | [`Pair::judge`] |
+//!
+//! Everything that decides a result is here or below; an application adds words, files and pictures. What was assumed,
+//! left out or repaired comes back as values: [`Note`], [`landmarks::Finding`], [`Explanation`].
+
+mod background;
+mod draping;
+mod ending;
+mod error;
+mod explain;
+mod history;
+mod initial;
+pub mod landmarks;
+mod note;
+mod outcome;
+mod pair;
+pub mod parts;
+pub mod preset;
+mod seams;
+mod similarity;
+mod source;
+mod stages;
+mod stand_in;
+mod target;
+mod transfer;
+
+pub use background::{Background, BackgroundStatus};
+pub use draping::{adjusted, Draping};
+pub use error::{Error, MeshProblem};
+pub use explain::{Advice, Explanation, PlaceKind, RegionDistances, WorstPlace};
+pub use history::{Curve, History};
+pub use initial::{initial_deformation, InitialMethod, InitialShape};
+pub use note::{Note, Shape};
+pub use outcome::Outcome;
+pub use pair::Pair;
+pub use parts::{Parts, Treatment};
+pub use preset::Preset;
+pub use seams::{Seams, SeamsError};
+pub use similarity::Similarity;
+pub use source::{GatheredPositions, Source};
+pub use stages::{Stages, DRAPING, REFINING};
+pub use target::Target;
+pub use transfer::Transfer;
+
+// What the signatures above name, so that one crate is enough.
+pub use mesh_core;
+pub use mesh_init;
+pub use mesh_metrics;
+pub use neural_drape;

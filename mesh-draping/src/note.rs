@@ -1,0 +1,217 @@
+//! What was decided without being asked, as values.
+
+use std::fmt;
+
+/// Which of the two shapes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Shape {
+    /// The mesh that is deformed.
+    Source,
+    /// The shape that it is draped over.
+    Target,
+}
+
+impl fmt::Display for Shape {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Source => "source",
+            Self::Target => "target",
+        })
+    }
+}
+
+/// Something that was assumed, left out or repaired on the way. `Display` says it in neutral words; how to decide
+/// otherwise is for the application to say.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Note {
+    /// Triangles of the target are no part of its outer surface.
+    TrianglesLeftOut {
+        /// How many have no area.
+        n_slivers: usize,
+        /// How many are in crumbs and fins.
+        n_crumbs: usize,
+        /// How many are of inner walls that no ray from outside reaches.
+        n_hidden: usize,
+        /// Their share of the target's area, 0..=1.
+        share: f64,
+    },
+    /// Points of the target lie far from all others.
+    PointsLeftOut {
+        /// How many.
+        n: usize,
+        /// Of how many.
+        n_points: usize,
+    },
+    /// Points of the target scatter about the surface.
+    PointsScatter {
+        /// By how much, in longest sides of the target's box.
+        scatter: f64,
+        /// How many are so far off that they were left out.
+        n_left_out: usize,
+    },
+    /// Too few landmarks say how the source stands: it was found by its shape.
+    PoseAssumed {
+        /// How many landmarks there are.
+        n_landmarks: usize,
+        /// By how much the source was turned, in degrees.
+        turn_deg: f64,
+        /// How far source and target are apart then, on the mean, in longest sides of the target's box.
+        cost: f64,
+    },
+    /// Another pose fits nearly as well.
+    PoseAmbiguous {
+        /// By how much the source is turned from the one to the other, in degrees.
+        turn_deg: f64,
+        /// As in [`Self::PoseAssumed`].
+        cost: f64,
+    },
+    /// Inner parts of the source attract nothing.
+    InnerPartsFreed {
+        /// Their share of the source's area, 0..=1.
+        share: f64,
+        /// How many are carried along.
+        n_free: usize,
+        /// How many move as rigid bodies.
+        n_rigid: usize,
+    },
+    /// The source is dense: a coarse stand-in was draped first and carried it.
+    StandIn {
+        /// Vertices of the stand-in.
+        n_vertices: usize,
+        /// Vertices of the source.
+        n_source: usize,
+    },
+    /// A part of one shape lies beyond the other, and was left out.
+    LeftOut {
+        /// The shape that reaches beyond.
+        shape: Shape,
+        /// The share of its area that lies beyond, 0..=1.
+        share: f64,
+    },
+    /// Folds and skinny triangles were taken out at the end.
+    Repaired {
+        /// How many.
+        n: usize,
+    },
+    /// A fold is left at an edge.
+    FoldLeft {
+        /// The ends of the edge: rows of the source's file.
+        rows: [usize; 2],
+    },
+    /// A triangle is left skinny.
+    SkinnyLeft {
+        /// The corners of the triangle: rows of the source's file.
+        rows: [usize; 3],
+    },
+}
+
+impl fmt::Display for Note {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match *self {
+            Self::TrianglesLeftOut {
+                n_slivers,
+                n_crumbs,
+                n_hidden,
+                share,
+            } => {
+                let kinds = [
+                    (n_slivers, "without area"),
+                    (n_crumbs, "in crumbs and fins"),
+                    (n_hidden, "of inner walls that no ray from outside reaches"),
+                ];
+                let counted = kinds.iter().filter(|(n, _)| *n > 0);
+                let list: Vec<String> = counted.map(|(n, what)| format!("{n} {what}")).collect();
+                write!(
+                    f,
+                    "triangles of the target were left out as no part of its outer surface: {} ({:.1} % of its area)",
+                    list.join(", "),
+                    100.0 * share
+                )
+            }
+            Self::PointsLeftOut { n, n_points } => write!(
+                f,
+                "{n} of {n_points} points of the target lie far from all others and were left out"
+            ),
+            Self::PointsScatter { scatter, n_left_out } => write!(
+                f,
+                "the points of the target scatter by {:.1} % of its longest side; {n_left_out} of them were left out, \
+                 and the others count where the planes of their neighbours run",
+                100.0 * scatter
+            ),
+            Self::PoseAssumed {
+                n_landmarks,
+                turn_deg,
+                cost,
+            } => write!(
+                f,
+                "{} ({}, {:.1} % of the longest side off on the mean); look at the picture",
+                found_by_shape(n_landmarks),
+                turned(turn_deg),
+                100.0 * cost
+            ),
+            Self::PoseAmbiguous { turn_deg, cost } => write!(
+                f,
+                "turned by another {turn_deg:.0}° the source fits nearly as well ({:.1} % off): mark two or three \
+                 places to decide which is front",
+                100.0 * cost
+            ),
+            Self::InnerPartsFreed {
+                share,
+                n_free,
+                n_rigid,
+            } => write!(
+                f,
+                "inner parts of the source ({:.1} % of its area) attract nothing: {n_free} carried along, {n_rigid} as \
+                 rigid bodies",
+                100.0 * share
+            ),
+            Self::StandIn {
+                n_vertices,
+                n_source,
+            } => write!(
+                f,
+                "the source is dense: {n_vertices} of its {n_source} vertices were draped first and carried the \
+                 others, then all were refined"
+            ),
+            Self::LeftOut { shape, share } => {
+                let other = match shape {
+                    Shape::Source => Shape::Target,
+                    Shape::Target => Shape::Source,
+                };
+                write!(
+                    f,
+                    "{:.0} % of the {shape} lies beyond the {other} and was left out",
+                    100.0 * share
+                )
+            }
+            Self::Repaired { n } => {
+                write!(f, "{n} folded or skinny triangles were taken out at the end")
+            }
+            Self::FoldLeft { rows: [a, b] } => write!(
+                f,
+                "a fold is left at the edge between vertices {a} and {b}; a landmark near it may undo it"
+            ),
+            Self::SkinnyLeft { rows: [a, b, c] } => write!(
+                f,
+                "the triangle of vertices {a}, {b} and {c} is left skinny; a landmark near it may widen it"
+            ),
+        }
+    }
+}
+
+fn found_by_shape(n_landmarks: usize) -> String {
+    match n_landmarks {
+        0 => "no landmarks: the way the source stands was found by its shape alone".to_owned(),
+        1 => "1 landmark: the way the source stands was found by its shape".to_owned(),
+        n => format!("{n} landmarks: the way the source stands was found by its shape"),
+    }
+}
+
+fn turned(turn_deg: f64) -> String {
+    if turn_deg < 5.0 {
+        "as the files stand".to_owned()
+    } else {
+        format!("turned by {turn_deg:.0}°")
+    }
+}

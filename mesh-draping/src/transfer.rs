@@ -1,0 +1,135 @@
+//! What is to be draped over what, and how.
+
+use mesh_core::{Landmark, Positions};
+use neural_drape::{Regions, StepReport};
+
+use crate::draping::Beginning;
+use crate::{Draping, Error, Outcome, Pair, Parts, Preset, Source, Stages, Target};
+
+/// A drape that is about to begin.
+///
+/// ```no_run
+/// use mesh_draping::{landmarks, Preset, Source, Target, Transfer};
+/// let source = Source::read("horse.obj")?;
+/// let target = Target::read("wolf.obj")?;
+/// let landmarks = landmarks::read("pairs.json", &source, &target)?;
+/// let outcome = Transfer::new(&source, &target, &landmarks, Preset::standard()).run()?;
+/// outcome.write("draped.obj")?;
+/// # Ok::<(), mesh_draping::Error>(())
+/// ```
+pub struct Transfer {
+    pair: Pair,
+    preset: Preset,
+    parts: Parts,
+    regions: Option<Regions>,
+    truth: Option<Positions>,
+    stages: Stages,
+    is_stand_in_allowed: bool,
+}
+
+impl Transfer {
+    /// The source draped over the target, led by landmarks ([`crate::landmarks`]).
+    pub fn new(source: &Source, target: &Target, landmarks: &[Landmark], preset: Preset) -> Self {
+        let pair = Pair {
+            source: source.clone(),
+            target: target.clone(),
+            landmarks: landmarks.to_vec(),
+        };
+        Self::of_pair(pair, preset)
+    }
+
+    /// The source of a pair draped over its target.
+    pub fn of_pair(pair: Pair, preset: Preset) -> Self {
+        Self {
+            pair,
+            preset,
+            parts: Parts::default(),
+            regions: None,
+            truth: None,
+            stages: Stages::off(),
+            is_stand_in_allowed: true,
+        }
+    }
+
+    /// Parts of the source are treated in their own way. Without this, inner pieces are found and carried along.
+    #[must_use]
+    pub fn with_parts(self, parts: Parts) -> Self {
+        Self { parts, ..self }
+    }
+
+    /// Vertices are treated in these ways; replaces [`Self::with_parts`].
+    #[must_use]
+    pub fn with_regions(self, regions: Regions) -> Self {
+        Self {
+            regions: Some(regions),
+            ..self
+        }
+    }
+
+    /// Where each vertex of the source belongs, to judge by; in the target's coordinates.
+    #[must_use]
+    pub fn with_truth(self, truth: Positions) -> Self {
+        Self {
+            truth: Some(truth),
+            ..self
+        }
+    }
+
+    /// What each stage takes is measured.
+    #[must_use]
+    pub fn with_stages(self, stages: Stages) -> Self {
+        Self { stages, ..self }
+    }
+
+    /// A dense source is draped itself, without a coarse stand-in.
+    #[must_use]
+    pub fn without_stand_in(self) -> Self {
+        Self {
+            is_stand_in_allowed: false,
+            ..self
+        }
+    }
+
+    /// Finds the initial deformation and sets the drape up, to be stepped.
+    ///
+    /// # Errors
+    /// Landmarks or parts that do not fit the source, a setting out of range, a deformation that cannot be solved for.
+    pub fn start(self) -> Result<Draping, Error> {
+        let (regions, notes) = match self.regions {
+            Some(regions) => (regions, Vec::new()),
+            None => {
+                let resolved = self.parts.resolve(&self.pair)?;
+                (resolved.regions, resolved.notes)
+            }
+        };
+        let beginning = Beginning {
+            preset: self.preset,
+            regions,
+            notes,
+            truth: self.truth,
+            stages: self.stages,
+            is_stand_in_allowed: self.is_stand_in_allowed,
+        };
+        Draping::start(self.pair, beginning)
+    }
+
+    /// The whole drape.
+    ///
+    /// # Errors
+    /// As [`Self::start`]; or the optimisation left the finite numbers.
+    pub fn run(self) -> Result<Outcome, Error> {
+        self.run_with(|_| ())
+    }
+
+    /// The whole drape; `show` sees every step.
+    ///
+    /// # Errors
+    /// As [`Self::run`].
+    pub fn run_with(self, mut show: impl FnMut(&StepReport)) -> Result<Outcome, Error> {
+        let mut draping = self.start()?;
+        while let Some(step) = draping.step()? {
+            show(&step);
+        }
+        draping.finish()
+    }
+}

@@ -1,0 +1,8 @@
+//! The method as a user of the library has it.
+
+mod background;
+mod interactive;
+mod parts;
+mod run;
+mod support;
+mod targets;

@@ -1,0 +1,26 @@
+//! Pictures without a graphics card, and the report page of a drape.
+//!
+//! | to | call |
+//! |---|---|
+//! | draw a mesh or a cloud | [`draw`], [`Model`], [`Look`], [`Shot`] |
+//! | draw the shapes of a drape, all from one direction | [`Gallery`] |
+//! | put pictures beside each other, write a PNG file | [`Image`] |
+//! | make the report page of a drape | [`Page`] |
+//! | build another self-contained page | [`html`] |
+
+mod camera;
+pub mod color;
+mod error;
+mod gallery;
+mod image;
+mod model;
+mod raster;
+mod report;
+
+pub use camera::{Axes, Up, View, ViewError};
+pub use error::RenderError;
+pub use gallery::{Gallery, DISTANCE_AT_TOP, STRETCH_AT_TOP, TRUTH_AT_TOP};
+pub use image::{Image, Pixel};
+pub use model::{Facet, Model};
+pub use raster::{draw, Look, Shot};
+pub use report::{html, Page};

@@ -1,0 +1,263 @@
+//! The fused network against closed forms, plain dfdx and finite differences.
+
+use dfdx::prelude::{
+    Axes2, Axis, Backward, Cpu, Gradients, NoneTape, PermuteTo, SumTo, Tensor, TensorFromVec,
+    Trace, TryConcatAlong, TryMatMul,
+};
+use mesh_core::{shapes, Point3};
+
+use super::super::config::{Frequencies, Reveal};
+use super::super::encoding::WaveKind;
+use super::*;
+
+/// Small enough to check, with every kind of encoding.
+fn configs() -> [NetworkConfig; 3] {
+    let small = |encoding| NetworkConfig {
+        n_hidden_layers: 2,
+        width: 16,
+        encoding,
+        output_scale: 0.5,
+    };
+    let progressive = |frequencies, reveal| Encoding::Progressive {
+        frequencies,
+        n_blocks: 3,
+        reveal,
+    };
+    let uniform = Frequencies::Uniform {
+        count: 11,
+        max: 4.0,
+        trainable: true,
+    };
+    let gaussian = Frequencies::Gaussian {
+        count: 7,
+        deviation: 2.0,
+    };
+    [
+        small(Encoding::None),
+        small(progressive(uniform, Reveal::HoldAndFade)),
+        small(progressive(gaussian, Reveal::Even { until: 0.5 })),
+    ]
+}
+
+/// 2 562 vertices: several blocks in several lanes.
+fn sphere() -> Positions {
+    Positions::from(shapes::icosphere(4).positions)
+}
+
+/// A smooth field of directions.
+fn field(x: &Positions) -> VertexData<Vector3> {
+    x.map(|p| Vector3::new((3.0 * p.y).sin(), p.z * p.x, 1.0 - p.y) / x.len() as f64)
+}
+
+/// A network that has left the identity, halfway through its encoding.
+fn trained(config: &NetworkConfig, x0: &Positions) -> Network {
+    let mut network = Network::new(x0, config, 3).unwrap();
+    network.set_progress(0.3).unwrap();
+    for _ in 0..20 {
+        let gradient = field(network.positions());
+        network.descend(&gradient, 1e-2).unwrap();
+    }
+    network
+}
+
+fn squared_distance(x: &Positions, y: &Positions) -> f64 {
+    x.iter()
+        .zip(y)
+        .map(|(a, b)| (a - b).norm_squared())
+        .sum::<f64>()
+        / x.len() as f64
+}
+
+#[test]
+fn starts_exactly_at_the_identity() {
+    let x0 = sphere();
+    for config in configs() {
+        let mut network = Network::new(&x0, &config, 3).unwrap();
+        assert_eq!(network.positions(), &x0);
+        network.set_progress(1.0).unwrap();
+        network.evaluate();
+        assert_eq!(network.positions(), &x0);
+    }
+}
+
+#[test]
+fn same_seed_gives_the_same_bits_at_1_and_2_threads() {
+    let x0 = sphere();
+    for config in configs() {
+        let run = |n_threads| {
+            let pool = rayon::ThreadPoolBuilder::new()
+                .num_threads(n_threads)
+                .build()
+                .unwrap();
+            pool.install(|| trained(&config, &x0).positions().clone())
+        };
+        let once = run(1);
+        assert_ne!(once, x0);
+        assert_eq!(once, run(2));
+        assert_eq!(once, run(1));
+    }
+}
+
+#[test]
+fn descends_towards_an_ellipsoid() {
+    let x0 = sphere();
+    let target = x0.map(|p| Point3::new(1.5 * p.x, p.y, 0.6 * p.z + 0.1 * p.x * p.y));
+    for config in configs() {
+        let mut network = Network::new(&x0, &config, 1).unwrap();
+        let before = squared_distance(&x0, &target);
+        for step in 0..150 {
+            network.set_progress(step as f64 / 150.0).unwrap();
+            let x = network.positions();
+            let gradient = x
+                .iter()
+                .zip(&target)
+                .map(|(a, b)| (a - b) / x.len() as f64)
+                .collect();
+            network.descend(&gradient, 5e-3).unwrap();
+        }
+        let after = squared_distance(network.positions(), &target);
+        assert!(after < 0.02 * before, "{before} -> {after}");
+    }
+}
+
+#[test]
+fn the_map_moves_the_vertices_as_the_network_does() {
+    let x0 = sphere();
+    for config in configs() {
+        let network = trained(&config, &x0);
+        let images = network.network().unwrap().apply(x0.as_slice());
+        for (image, x) in images.iter().zip(network.positions()) {
+            // Blocks of another size may sum the 16 inputs of a neuron in another order.
+            assert!((image - x).norm() < 1e-5);
+        }
+    }
+}
+
+#[test]
+fn gradient_equals_the_finite_difference_along_itself() {
+    let x0 = sphere();
+    for config in configs() {
+        let mut network = trained(&config, &x0);
+        let weights = field(&x0);
+        let value = |network: &Network| -> f64 {
+            let moved = network.positions().iter().zip(&x0);
+            moved
+                .zip(&weights)
+                .map(|((x, x0), w)| (x - x0).dot(w))
+                .sum()
+        };
+        let mut gradients = network.gradients(&weights).unwrap();
+        let here = network.parameters.clone();
+        let length = here.clone().norm(&mut gradients).unwrap();
+
+        let h = 1e-2;
+        let mut moved = |sign: f64| {
+            network.parameters = here.clone();
+            network
+                .parameters
+                .shift(&mut gradients, (sign * h / length) as f32)
+                .unwrap();
+            network.evaluate();
+            value(&network)
+        };
+        let difference = (moved(1.0) - moved(-1.0)) / (2.0 * h);
+        // The values are sums of f32 outputs of size 1: 1e-7 / h of rounding, and h² of curvature.
+        assert!(
+            (difference / length - 1.0).abs() < 2e-3,
+            "{difference} vs {length}"
+        );
+    }
+}
+
+#[test]
+fn fused_layers_equal_plain_dfdx() {
+    let x0 = sphere();
+    for config in configs() {
+        let network = trained(&config, &x0);
+        let weights = field(&x0);
+        let (plain_output, mut plain) = plain_dfdx(&network, &weights);
+        let evaluation = lock(&network.evaluation);
+        let fused_output: Vec<f32> = evaluation.pass.outputs().flatten().collect();
+        drop(evaluation);
+        assert!(relative_difference(&fused_output, &plain_output) < 1e-5);
+
+        let mut fused = network.gradients(&weights).unwrap();
+        for parameter in network.parameters.tensors() {
+            let ours = fused.get_or_alloc_mut(parameter).unwrap().to_vec();
+            let theirs = plain.get_or_alloc_mut(parameter).unwrap().to_vec();
+            // Sums of 2 562 products in another order.
+            assert!(relative_difference(&ours, &theirs) < 1e-4);
+        }
+    }
+}
+
+fn relative_difference(a: &[f32], b: &[f32]) -> f32 {
+    let norm = |v: &mut dyn Iterator<Item = f32>| v.map(|x| x * x).sum::<f32>().sqrt();
+    assert_eq!(a.len(), b.len());
+    norm(&mut a.iter().zip(b).map(|(a, b)| a - b)) / norm(&mut b.iter().copied()).max(1e-12)
+}
+
+/// Output and dL/dθ by dfdx's own operations.
+fn plain_dfdx(network: &Network, weights: &VertexData<Vector3>) -> (Vec<f32>, Gradients<f32, Cpu>) {
+    let device = Cpu::default();
+    let matrix =
+        |entries: Vec<f32>, n_columns: usize| -> Tensor<(usize, usize), f32, Cpu, NoneTape> {
+            let shape = (entries.len() / n_columns, n_columns);
+            device.tensor_from_vec(entries, shape)
+        };
+    let Evaluation { map, mask, .. } = &*lock(&network.evaluation);
+    let n = network.initial.len();
+    let points = matrix(
+        network
+            .initial
+            .iter()
+            .flat_map(|p| map.to_input(p))
+            .collect(),
+        3,
+    );
+    let tensors = network.parameters.tensors();
+
+    let n_features = mask.alpha().len();
+    let mut features = match map.waves.kind {
+        _ if n_features == 3 => points.leaky_traced(),
+        WaveKind::Sine => {
+            let rows = tensors[tensors.len() - 1].leaky_trace();
+            let phases = points
+                .clone()
+                .leaky_traced()
+                .matmul(rows.permute::<_, Axes2<1, 0>>());
+            (points.leaky_traced(), (phases * map.waves.gain).sin()).concat_along(Axis::<1>)
+        }
+        WaveKind::SineCosine => {
+            let mut entries = vec![0.0; n * n_features];
+            for (p, features) in network.initial.iter().zip(entries.chunks_mut(n_features)) {
+                map.waves.encode(&map.to_input(p), features, None);
+            }
+            matrix(entries, n_features).leaky_traced()
+        }
+    };
+    let mut diagonal = vec![0.0; n_features * n_features];
+    for (k, m) in mask.alpha().iter().enumerate() {
+        diagonal[k * (n_features + 1)] = *m;
+    }
+    features = features.matmul(matrix(diagonal, n_features));
+
+    let n_layers = map.layers.len();
+    for l in 0..n_layers {
+        let ones = matrix(vec![1.0; n], 1).leaky_traced();
+        let bias = ones.matmul(tensors[2 * l + 1].clone());
+        features = features.matmul(tensors[2 * l].clone()) + bias;
+        if l + 1 < n_layers {
+            features = features.relu();
+        }
+    }
+    let output = features.as_vec();
+    let unit = map.output_unit();
+    let weights = weights
+        .iter()
+        .flat_map(|w| [w.x, w.y, w.z].map(|d| (d * unit) as f32));
+    let gradients = (features * matrix(weights.collect(), 3))
+        .sum::<(), _>()
+        .backward();
+    (output, gradients)
+}
