@@ -8,7 +8,7 @@ use mesh_core::Positions;
 use neural_drape::Warp;
 
 use crate::args::MorphArgs;
-use crate::output::{check_distinct, check_mesh, left_beside, say, warn};
+use crate::output::{check_distinct, check_mesh, findings, left_beside, say, warn};
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
@@ -35,7 +35,13 @@ pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
         file.lost_in(&args.output),
         left_beside(&file, &args.output),
     ];
-    warn(&notes.into_iter().flatten().collect::<Vec<_>>());
+    let found = findings(&file);
+    warn(
+        &found
+            .into_iter()
+            .chain(notes.into_iter().flatten())
+            .collect::<Vec<_>>(),
+    );
     let moved = Positions::from(warp.apply(&file.soup().positions));
     file.write(&args.output, &moved)?;
     say(&format!(

@@ -129,7 +129,7 @@ fn a_skin_that_cannot_be_followed_is_told() {
     ] {
         assert!(JSON.contains(from));
         let read = read(&JSON.replace(from, to));
-        assert_eq!(read.findings(), [unfollowed.clone()], "{to}");
+        assert_eq!(read.findings(), std::slice::from_ref(&unfollowed), "{to}");
         assert_eq!(read.soup().positions[1], Point3::new(1., 0., 0.));
     }
 }
