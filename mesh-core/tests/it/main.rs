@@ -13,6 +13,7 @@ mod io_mutations;
 mod io_obj;
 mod io_off;
 mod io_ply;
+mod io_readme;
 mod io_skins;
 mod io_stl;
 mod io_support;
