@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use mesh_core::io::{Finding, MeshFile};
+
 /// Which of the two shapes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Shape {
@@ -25,6 +27,13 @@ impl fmt::Display for Shape {
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Note {
+    /// A file was read although it contradicts itself, or not all of it was read.
+    File {
+        /// Whose file it is.
+        shape: Shape,
+        /// What was found in it.
+        finding: Finding,
+    },
     /// Triangles of the target are no part of its outer surface.
     TrianglesLeftOut {
         /// How many have no area.
@@ -106,9 +115,20 @@ pub enum Note {
     },
 }
 
+impl Note {
+    /// What was found in the file of a shape.
+    pub(crate) fn of_file(file: &MeshFile, shape: Shape) -> Vec<Self> {
+        let findings = file.findings().iter().cloned();
+        findings
+            .map(|finding| Self::File { shape, finding })
+            .collect()
+    }
+}
+
 impl fmt::Display for Note {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match *self {
+            Self::File { shape, ref finding } => write!(f, "the file of the {shape}: {finding}"),
             Self::TrianglesLeftOut { .. }
             | Self::PointsLeftOut { .. }
             | Self::PointsScatter { .. } => self.about_target(f),
