@@ -10,9 +10,7 @@ use mesh_draping::{Advice, Explanation, Note, Pair, Source};
 pub(crate) fn about_inputs(pair: &Pair) -> Vec<String> {
     let findings = pair.findings();
     let findings = findings.iter().map(Finding::to_string);
-    let of_source = pair.source.notes();
-    let of_files = notes(&of_source).chain(notes(pair.target.notes()));
-    findings.chain(of_files).collect()
+    findings.chain(notes(&pair.notes())).collect()
 }
 
 /// Notes, each with the options that decide otherwise.
