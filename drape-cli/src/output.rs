@@ -4,7 +4,7 @@ use std::io::{self, Write as _};
 use std::path::Path;
 
 use anyhow::bail;
-use mesh_core::io::{Format, MeshFile};
+use mesh_core::io::{printable, Format, MeshFile};
 
 /// Prints text; a reader that has had enough (`| head`) is no error.
 pub(crate) fn say(text: &str) -> io::Result<()> {
@@ -19,6 +19,15 @@ pub(crate) fn warn(warnings: &[String]) {
     for warning in warnings {
         eprintln!("warning: {warning}");
     }
+}
+
+/// What was found in a file that was read, with its name.
+pub(crate) fn findings(file: &MeshFile) -> Vec<String> {
+    let name = file.path().to_string_lossy();
+    let found = file.findings().iter();
+    found
+        .map(|finding| format!("{}: {finding}", printable(&name)))
+        .collect()
 }
 
 /// Refuses an output whose folder is not there, before any work is done.

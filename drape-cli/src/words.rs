@@ -10,7 +10,7 @@ use mesh_draping::{Advice, Explanation, Note, Pair, Source};
 pub(crate) fn about_inputs(pair: &Pair) -> Vec<String> {
     let findings = pair.findings();
     let findings = findings.iter().map(Finding::to_string);
-    findings.chain(notes(pair.target.notes())).collect()
+    findings.chain(notes(&pair.notes())).collect()
 }
 
 /// Notes, each with the options that decide otherwise.

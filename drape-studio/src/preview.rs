@@ -170,12 +170,13 @@ fn show(job: &PreviewJob, broadcast: &Broadcast) -> Result<Vec<Note>, Error> {
     Ok(notes)
 }
 
-/// What is suspicious about the landmarks, and what of the target was left out.
+/// What is suspicious about the landmarks, what was found in the files, and what of the target was left out.
 fn warnings(job: &PreviewJob) -> Vec<String> {
     let pair = job.displayed.shapes.pair(job.landmarks.clone());
     let findings = pair.findings().into_iter();
     let findings = findings.map(|finding| numbered(finding, &job.numbers).to_string());
-    let left_out = pair.target.notes().iter().map(ToString::to_string);
+    let notes = pair.notes();
+    let left_out = notes.iter().map(ToString::to_string);
     findings.chain(left_out).collect()
 }
 

@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use mesh_core::io::{Finding, MeshFile};
+
 /// Which of the two shapes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Shape {
@@ -25,6 +27,13 @@ impl fmt::Display for Shape {
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Note {
+    /// A file was read although it contradicts itself, or not all of it was read.
+    File {
+        /// Whose file it is.
+        shape: Shape,
+        /// What was found in it.
+        finding: Finding,
+    },
     /// Triangles of the target are no part of its outer surface.
     TrianglesLeftOut {
         /// How many have no area.
@@ -106,8 +115,68 @@ pub enum Note {
     },
 }
 
+impl Note {
+    /// What was found in the file of a shape.
+    pub(crate) fn of_file(file: &MeshFile, shape: Shape) -> Vec<Self> {
+        let findings = file.findings().iter().cloned();
+        findings
+            .map(|finding| Self::File { shape, finding })
+            .collect()
+    }
+}
+
 impl fmt::Display for Note {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match *self {
+            Self::File { shape, ref finding } => write!(f, "the file of the {shape}: {finding}"),
+            Self::TrianglesLeftOut { .. }
+            | Self::PointsLeftOut { .. }
+            | Self::PointsScatter { .. } => self.about_target(f),
+            Self::PoseAssumed { .. } | Self::PoseAmbiguous { .. } => self.about_pose(f),
+            Self::InnerPartsFreed {
+                share,
+                n_free,
+                n_rigid,
+            } => write!(
+                f,
+                "inner parts of the source ({:.1} % of its area) attract nothing: {n_free} carried along, {n_rigid} as \
+                 rigid bodies",
+                100.0 * share
+            ),
+            Self::StandIn {
+                n_vertices,
+                n_source,
+            } => write!(
+                f,
+                "the source is dense: {n_vertices} of its {n_source} vertices were draped first and carried the \
+                 others, then all were refined"
+            ),
+            Self::LeftOut { shape, share } => write!(
+                f,
+                "{:.0} % of the {shape} lies beyond the {} and was left out",
+                100.0 * share,
+                shape.other()
+            ),
+            Self::Repaired { .. } | Self::FoldLeft { .. } | Self::SkinnyLeft { .. } => {
+                self.about_defects(f)
+            }
+        }
+    }
+}
+
+impl Shape {
+    /// The other of the two.
+    fn other(self) -> Self {
+        match self {
+            Self::Source => Self::Target,
+            Self::Target => Self::Source,
+        }
+    }
+}
+
+impl Note {
+    /// What was left out of the target, or smoothed.
+    fn about_target(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match *self {
             Self::TrianglesLeftOut {
                 n_slivers,
@@ -133,12 +202,22 @@ impl fmt::Display for Note {
                 f,
                 "{n} of {n_points} points of the target lie far from all others and were left out"
             ),
-            Self::PointsScatter { scatter, n_left_out } => write!(
+            Self::PointsScatter {
+                scatter,
+                n_left_out,
+            } => write!(
                 f,
                 "the points of the target scatter by {:.1} % of its longest side; {n_left_out} of them were left out, \
                  and the others count where the planes of their neighbours run",
                 100.0 * scatter
             ),
+            _ => Ok(()),
+        }
+    }
+
+    /// How the way the source stands was found.
+    fn about_pose(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match *self {
             Self::PoseAssumed {
                 n_landmarks,
                 turn_deg,
@@ -156,35 +235,13 @@ impl fmt::Display for Note {
                  places to decide which is front",
                 100.0 * cost
             ),
-            Self::InnerPartsFreed {
-                share,
-                n_free,
-                n_rigid,
-            } => write!(
-                f,
-                "inner parts of the source ({:.1} % of its area) attract nothing: {n_free} carried along, {n_rigid} as \
-                 rigid bodies",
-                100.0 * share
-            ),
-            Self::StandIn {
-                n_vertices,
-                n_source,
-            } => write!(
-                f,
-                "the source is dense: {n_vertices} of its {n_source} vertices were draped first and carried the \
-                 others, then all were refined"
-            ),
-            Self::LeftOut { shape, share } => {
-                let other = match shape {
-                    Shape::Source => Shape::Target,
-                    Shape::Target => Shape::Source,
-                };
-                write!(
-                    f,
-                    "{:.0} % of the {shape} lies beyond the {other} and was left out",
-                    100.0 * share
-                )
-            }
+            _ => Ok(()),
+        }
+    }
+
+    /// What the last stage took out, and what it could not.
+    fn about_defects(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match *self {
             Self::Repaired { n } => {
                 write!(f, "{n} folded or skinny triangles were taken out at the end")
             }
@@ -196,6 +253,7 @@ impl fmt::Display for Note {
                 f,
                 "the triangle of vertices {a}, {b} and {c} is left skinny; a landmark near it may widen it"
             ),
+            _ => Ok(()),
         }
     }
 }
@@ -213,5 +271,62 @@ fn turned(turn_deg: f64) -> String {
         "as the files stand".to_owned()
     } else {
         format!("turned by {turn_deg:.0}°")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_note_is_a_sentence_without_options() {
+        let notes = [
+            Note::TrianglesLeftOut {
+                n_slivers: 0,
+                n_crumbs: 2,
+                n_hidden: 1,
+                share: 0.01,
+            },
+            Note::PointsLeftOut { n: 1, n_points: 9 },
+            Note::PointsScatter {
+                scatter: 0.01,
+                n_left_out: 2,
+            },
+            Note::PoseAssumed {
+                n_landmarks: 0,
+                turn_deg: 90.0,
+                cost: 0.01,
+            },
+            Note::PoseAmbiguous {
+                turn_deg: 180.0,
+                cost: 0.01,
+            },
+            Note::InnerPartsFreed {
+                share: 0.1,
+                n_free: 1,
+                n_rigid: 2,
+            },
+            Note::StandIn {
+                n_vertices: 3000,
+                n_source: 20_000,
+            },
+            Note::LeftOut {
+                shape: Shape::Source,
+                share: 0.25,
+            },
+            Note::Repaired { n: 3 },
+            Note::FoldLeft { rows: [1, 2] },
+            Note::SkinnyLeft { rows: [1, 2, 3] },
+        ];
+        for note in notes {
+            let text = note.to_string();
+            assert!(text.len() > 30 && !text.contains("--"), "{note:?}: {text}");
+        }
+        let left_out = Note::LeftOut {
+            shape: Shape::Source,
+            share: 0.25,
+        };
+        let expected = "25 % of the source lies beyond the target and was left out";
+        assert_eq!(left_out.to_string(), expected);
     }
 }

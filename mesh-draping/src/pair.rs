@@ -6,7 +6,7 @@ use mesh_metrics::{evaluate, EvaluationConfig, EvaluationInput, Report};
 use neural_drape::{DrapeError, Regions};
 
 use crate::landmarks::{examine, Finding};
-use crate::{Error, Source, Target};
+use crate::{Error, Note, Source, Target};
 
 /// Everything that a drape starts from. Cloning is cheap but for the landmarks.
 #[derive(Clone)]
@@ -23,6 +23,13 @@ impl Pair {
     /// What is probably wrong with the landmarks.
     pub fn findings(&self) -> Vec<Finding> {
         examine(self)
+    }
+
+    /// What was found in the files of both shapes, and what was left out of the target.
+    pub fn notes(&self) -> Vec<Note> {
+        let mut notes = self.source.notes();
+        notes.extend_from_slice(self.target.notes());
+        notes
     }
 
     /// Judges a shape of the source by every measure of [`mesh_metrics`], against `truth` too where it is known; both in

@@ -11,7 +11,7 @@ use mesh_core::{
 };
 
 use crate::error::{in_file, MeshProblem};
-use crate::{Error, Seams};
+use crate::{Error, Note, Seams, Shape};
 
 /// A mesh to deform: connectivity, rest positions, its polygons as triangles, and its file, to write it back.
 ///
@@ -119,6 +119,12 @@ impl Source {
     /// The file it was read from; none for a mesh made in memory.
     pub fn file(&self) -> Option<&MeshFile> {
         self.file.as_deref()
+    }
+
+    /// What was read of its file although that contradicts itself, or was not read.
+    pub fn notes(&self) -> Vec<Note> {
+        self.file()
+            .map_or_else(Vec::new, |file| Note::of_file(file, Shape::Source))
     }
 
     /// Its connectivity, polygons kept.

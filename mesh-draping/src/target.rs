@@ -10,7 +10,7 @@ use mesh_core::{
 };
 
 use crate::error::{in_file, MeshProblem};
-use crate::{Error, Note};
+use crate::{Error, Note, Shape};
 
 /// A shape to drape over: a mesh with any defect, or a cloud where there are no faces.
 ///
@@ -39,15 +39,19 @@ impl Target {
     /// It holds neither a triangle nor a point.
     pub fn of_file(file: MeshFile) -> Result<Self, Error> {
         let path = file.path().to_owned();
+        let of_file = Note::of_file(&file, Shape::Target);
         let target = if file.soup().faces.is_empty() {
             let normals = file.vertex_normals();
             Self::of_points(file.into_soup().positions, normals)
         } else {
             Self::of_soup(file.into_soup())
         };
+        let target = target.map_err(in_file(&path))?;
+        let notes = of_file.into_iter().chain(target.notes.iter().cloned());
         Ok(Self {
-            path: Some(path.clone()),
-            ..target.map_err(in_file(&path))?
+            path: Some(path),
+            notes: notes.collect(),
+            ..target
         })
     }
 

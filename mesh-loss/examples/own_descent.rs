@@ -3,7 +3,7 @@
 //! `cargo run --release -p mesh-loss --example own_descent`
 //!
 //! The loss is Eq. 1 of the paper, `L = L_d + λ L_s`: Chamfer distance and one landmark, then corner angles and areas.
-//! The descent is the plainest there is: a step of fixed length along the gradient, the length falling to 0.
+//! The descent is the plainest there is: a step along the gradient, by a rate that falls to 0.
 
 use std::error::Error;
 use std::sync::Arc;
@@ -20,8 +20,10 @@ use mesh_loss::{
 const N_ITERATIONS: usize = 300;
 /// λ of Eq. 1.
 const LAMBDA: f64 = 0.02;
-/// How far the vertex with the steepest gradient moves in the first step.
-const FIRST_STEP: f64 = 0.03;
+/// Weight of the landmark: as much as that of a dozen vertices in the Chamfer distance.
+const LANDMARK: f64 = 0.1;
+/// The first rate for each vertex. Means share their gradients out over all vertices.
+const FIRST_RATE: f64 = 0.02;
 /// Samples on each side, drawn anew in every iteration; all pairs count alike.
 const SAMPLING: SamplingConfig = SamplingConfig {
     n_samples: 2000,
@@ -60,7 +62,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let matches = matcher.resample(&x, &SAMPLING, &mut rng, &mut Profile::off());
         let terms: [(f64, &dyn Loss); 4] = [
             (1.0, &Chamfer(&matches)),
-            (10.0, &LandmarkDistance(&landmarks)),
+            (LANDMARK, &LandmarkDistance(&landmarks)),
             (LAMBDA, &angles),
             (LAMBDA, &areas),
         ];
@@ -68,9 +70,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         for (weight, term) in terms {
             term.accumulate(&x, weight, &mut gradient);
         }
-        let steepest = gradient.iter().map(Vector3::norm).fold(0.0, f64::max);
         let left = 1.0 - iteration as f64 / N_ITERATIONS as f64;
-        let rate = FIRST_STEP * left / steepest.max(f64::MIN_POSITIVE);
+        let rate = FIRST_RATE * left * x.len() as f64;
         for (p, g) in x.iter_mut().zip(&gradient) {
             *p -= g * rate;
         }

@@ -78,7 +78,7 @@ pub struct Overlap {
     pub mesh_exceeds: bool,
 }
 
-/// How much of each surface lies beyond the other, from [`SurfaceMatcher::beyond`]; shares in 0..=1.
+/// How much of each surface lies beyond the other, from [`SurfaceMatcher::beyond`](crate::SurfaceMatcher::beyond); shares in 0..=1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Beyond {
     /// Share of the target's area beyond the mesh.

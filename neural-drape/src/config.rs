@@ -149,3 +149,37 @@ impl Sampling {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn samples_double_with_every_so_many_iterations_up_to_the_most() {
+        let sampling = Sampling {
+            n_samples: 1000,
+            double_every: Some(400),
+            max_samples: 5000,
+            ..DrapeConfig::standard().sampling
+        };
+        let n = |sampling: Sampling, iteration| {
+            let overlap = Overlap::default();
+            sampling.at(iteration, overlap, 1.0).n_samples
+        };
+        let iterations = [0, 399, 400, 799, 800, 1199, 1200, 100_000];
+        let expected = [1000, 1000, 2000, 2000, 4000, 4000, 5000, 5000];
+        assert_eq!(iterations.map(|i| n(sampling, i)), expected);
+
+        let constant = Sampling {
+            double_every: None,
+            ..sampling
+        };
+        assert_eq!(iterations.map(|i| n(constant, i)), [1000; 8]);
+        // A bound below the start does not bind.
+        let bound_below = Sampling {
+            max_samples: 10,
+            ..sampling
+        };
+        assert_eq!(iterations.map(|i| n(bound_below, i)), [1000; 8]);
+    }
+}

@@ -15,11 +15,11 @@ pub enum DrapeError {
         expected: usize,
     },
     /// The triangles are not those of the shapes.
-    #[error("the triangulation names vertices up to {n_named}, the source has {n_vertices}: it is that of another mesh")]
+    #[error("the triangulation is that of a mesh of {n_triangulated} vertices, the source has {n_vertices}")]
     ForeignTriangulation {
-        /// How many vertices the triangulation needs.
-        n_named: usize,
-        /// How many there are.
+        /// How many vertices the mesh of the triangulation has.
+        n_triangulated: usize,
+        /// How many the source has.
         n_vertices: usize,
     },
     /// A shape or displacement has an entry that is not finite.

@@ -25,18 +25,10 @@ impl DrapeInput<'_> {
     /// All belongs together, is finite, and has an area.
     pub(crate) fn check(&self) -> Result<(), DrapeError> {
         let expected = self.rest.len();
-        if self.initial.len() != expected {
-            return Err(DrapeError::LengthMismatch {
-                what: "the initial shape",
-                found: self.initial.len(),
-                expected,
-            });
-        }
-        let corners = self.triangulation.triangles().iter().flatten();
-        let n_named = corners.map(|v| v.index() + 1).max().unwrap_or(0);
-        if n_named > expected {
+        check_length("the initial shape", self.initial.len(), expected)?;
+        if self.triangulation.n_vertices() != expected {
             return Err(DrapeError::ForeignTriangulation {
-                n_named,
+                n_triangulated: self.triangulation.n_vertices(),
                 n_vertices: expected,
             });
         }
@@ -48,6 +40,23 @@ impl DrapeInput<'_> {
         } else {
             Err(DrapeError::NoArea)
         }
+    }
+}
+
+/// There is one entry for each of the `expected` vertices.
+pub(crate) fn check_length(
+    what: &'static str,
+    found: usize,
+    expected: usize,
+) -> Result<(), DrapeError> {
+    if found == expected {
+        Ok(())
+    } else {
+        Err(DrapeError::LengthMismatch {
+            what,
+            found,
+            expected,
+        })
     }
 }
 

@@ -5,7 +5,62 @@ use mesh_core::{Positions, Vector3, VertexData};
 use crate::network::NetworkMap;
 use crate::{DrapeError, StateReader, StateWriter};
 
-/// A differentiable map θ ↦ positions, with its own optimiser.
+/// A differentiable map θ ↦ positions, with its own optimiser: f(M | θ) of the paper.
+///
+/// The network ([`crate::network`]) and the preconditioned vertices ([`crate::Vertices`]) are two; [`crate::Drape::with_parametrization`] takes one of your own.
+///
+/// A drape that only shifts the source as a whole, by 3 parameters t: `x = x₀ + t`, `dL/dt = Σᵢ dL/dxᵢ`.
+///
+/// ```
+/// use std::sync::Arc;
+/// use mesh_core::{shapes, Positions, TargetSurface, TriangleSoup, Triangulation, Vector3, VertexData};
+/// use neural_drape::{
+///     Drape, DrapeConfig, DrapeError, DrapeInput, Parametrization, StateReader, StateWriter,
+/// };
+///
+/// struct Shift(Positions);
+///
+/// impl Parametrization for Shift {
+///     fn positions(&self) -> &Positions {
+///         &self.0
+///     }
+///     fn descend(&mut self, gradient: &VertexData<Vector3>, rate: f64) -> Result<(), DrapeError> {
+///         let sum: Vector3 = gradient.iter().sum();
+///         let step = sum.try_normalize(1e-12).unwrap_or_default() * rate;
+///         self.0.iter_mut().for_each(|p| *p -= step);
+///         Ok(())
+///     }
+///     fn set_progress(&mut self, _progress: f64) -> Result<(), DrapeError> {
+///         Ok(())
+///     }
+///     fn displace(&mut self, displacements: &VertexData<Vector3>) {
+///         self.0.iter_mut().zip(displacements).for_each(|(p, d)| *p += d);
+///     }
+///     fn save(&mut self, state: &mut StateWriter) {
+///         state.points(&self.0);
+///     }
+///     fn restore(&mut self, state: &mut StateReader<'_>) -> Result<(), DrapeError> {
+///         state.points(self.0.iter_mut())
+///     }
+/// }
+///
+/// let (mesh, rest) = shapes::quad_sphere(8).into_halfedge()?;
+/// let target: Arc<dyn TargetSurface> = Arc::new(TriangleSoup::new(shapes::icosphere(3))?);
+/// let input = DrapeInput {
+///     triangulation: &Arc::new(Triangulation::new(&mesh, &rest)),
+///     initial: &rest.map(|p| p + Vector3::new(0.3, 0.2, 0.0)),
+///     rest: &Arc::new(rest),
+///     target: &target,
+///     landmarks: &[],
+/// };
+/// let start = |initial: &Positions| Ok(Box::new(Shift(initial.clone())) as Box<dyn Parametrization>);
+/// let mut drape = Drape::with_parametrization(input, DrapeConfig::quick(), start)?;
+/// while drape.step()?.is_some() {}
+/// let x = drape.positions();
+/// let centre = x.iter().map(|p| p.coords).sum::<Vector3>() / x.len() as f64;
+/// assert!(centre.norm() < 0.02);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub trait Parametrization: Send {
     /// Positions for the current parameters, one per vertex, in the unit frame of the target.
     fn positions(&self) -> &Positions;

@@ -7,6 +7,7 @@ use mesh_operators::{
 };
 use nalgebra::Matrix3;
 
+use crate::input::check_length;
 use crate::{DrapeError, StateReader, StateWriter};
 
 /// The field that passive pieces follow has at most this many centres.
@@ -41,12 +42,8 @@ impl Regions {
             ("the attraction of the regions", self.attraction.len()),
             ("the rigid regions", self.rigid.len()),
         ];
-        if let Some(&(what, found)) = lengths.iter().find(|(_, n)| *n != n_vertices) {
-            return Err(DrapeError::LengthMismatch {
-                what,
-                found,
-                expected: n_vertices,
-            });
+        for (what, found) in lengths {
+            check_length(what, found, n_vertices)?;
         }
         match self.attraction.iter().find(|a| !(0.0..=1.0).contains(*a)) {
             Some(&value) => Err(DrapeError::Setting {

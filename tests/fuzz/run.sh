@@ -6,7 +6,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 targets=("$@")
-[ ${#targets[@]} -gt 0 ] || targets=(obj off ply stl gltf glb xyz any landmarks settings warp)
+[ ${#targets[@]} -gt 0 ] || targets=(obj off ply stl gltf glb xyz any landmarks settings warp whole)
 out=${OUT:-tests/fuzz}
 mkdir -p "$out/logs"
 cargo fuzz build --fuzz-dir tests/fuzz -s none

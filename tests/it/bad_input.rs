@@ -61,7 +61,7 @@ fn coordinates_that_are_not_finite() {
     refused(
         "source.obj",
         b"v 0 0 0\nv nan 0 0\nv 0 1 0\nf 1 2 3\n",
-        &[":2", "not finite"],
+        &[":2", "`nan` is not a number"],
     );
     refused(
         "target.ply",

@@ -6,7 +6,7 @@ use mesh_core::io::{MeshFile, Morphs};
 use mesh_core::Positions;
 use mesh_draping::{landmarks, Pair, Seams, Source, Target};
 
-use crate::output::warn;
+use crate::output::{left_beside, warn};
 
 /// Which vertices of the source are one.
 #[derive(Clone, Copy, Debug, clap::Args)]
@@ -57,8 +57,23 @@ impl std::fmt::Display for Morphing {
 }
 
 impl MorphArgs {
+    /// Refuses an output that a file cannot be written to; what is not as in the source there, in words.
+    pub(crate) fn check_output(
+        &self,
+        file: &MeshFile,
+        output: &Path,
+    ) -> anyhow::Result<Vec<String>> {
+        file.check_writable(output)?;
+        let notes = [
+            self.left_behind(file, output),
+            file.lost_in(output),
+            left_beside(file, output),
+        ];
+        Ok(notes.into_iter().flatten().collect())
+    }
+
     /// That morph targets stay as they were, where they do, in words.
-    pub(crate) fn left_behind(&self, file: &MeshFile, output: &Path) -> Option<String> {
+    fn left_behind(&self, file: &MeshFile, output: &Path) -> Option<String> {
         let n = file.contents().n_morph_targets;
         let is_kept = n > 0 && self.morphs == Morphing::Keep && file.keeps_format(output);
         is_kept.then(|| {

@@ -8,7 +8,7 @@ use mesh_core::Positions;
 use neural_drape::Warp;
 
 use crate::args::MorphArgs;
-use crate::output::{check_distinct, check_mesh, left_beside, say, warn};
+use crate::output::{check_distinct, check_mesh, findings, say, warn};
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
@@ -29,13 +29,8 @@ pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let warp = Warp::load(&args.warp)?;
     let mut file = io::read_mesh(&args.mesh)?;
     file.set_morphs(args.morphs.morphs.into());
-    file.check_writable(&args.output)?;
-    let notes = [
-        args.morphs.left_behind(&file, &args.output),
-        file.lost_in(&args.output),
-        left_beside(&file, &args.output),
-    ];
-    warn(&notes.into_iter().flatten().collect::<Vec<_>>());
+    warn(&findings(&file));
+    warn(&args.morphs.check_output(&file, &args.output)?);
     let moved = Positions::from(warp.apply(&file.soup().positions));
     file.write(&args.output, &moved)?;
     say(&format!(

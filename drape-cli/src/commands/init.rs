@@ -7,7 +7,7 @@ use mesh_draping::initial_deformation;
 use mesh_render::{Gallery, Image, View};
 
 use crate::args::{read_truth, InitialArg, Inputs, MorphArgs, ViewArgs, WeldArgs};
-use crate::output::{check_distinct, check_mesh, check_writable, left_beside, say, warn};
+use crate::output::{check_distinct, check_mesh, check_writable, say, warn};
 use crate::usage::Stopwatch;
 use crate::words;
 
@@ -67,10 +67,7 @@ pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
         .transpose()?;
     let mut warnings = words::about_inputs(&pair);
     if let Some(file) = pair.source.file() {
-        file.check_writable(&args.output)?;
-        warnings.extend(args.morphs.left_behind(file, &args.output));
-        warnings.extend(file.lost_in(&args.output));
-        warnings.extend(left_beside(file, &args.output));
+        warnings.extend(args.morphs.check_output(file, &args.output)?);
     }
     let initial = initial_deformation(&pair, args.initial.into())?;
     warnings.extend(words::notes(&initial.notes));

@@ -11,7 +11,7 @@ use mesh_render::{color, draw, Axes, Image, Look, Model, Shot, View};
 
 use crate::args::ViewArgs;
 use crate::inspection::Inspection;
-use crate::output::{check_writable, say};
+use crate::output::{check_writable, findings, say, warn};
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
@@ -45,6 +45,7 @@ pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
         check_writable(path)?;
     }
     let file = io::read_mesh(&args.file)?;
+    warn(&findings(&file));
     let inspection = Inspection::of(&file).with_context(|| args.file.display().to_string())?;
     let inner = match &args.hidden {
         Some(_) => {

@@ -10,7 +10,7 @@ use mesh_draping::{Outcome, Stages, Transfer};
 use mesh_render::{Gallery, Image, Page, View, DISTANCE_AT_TOP};
 
 use crate::args::{read_truth, Inputs, MorphArgs, PartArgs, SettingsArgs, ViewArgs, WeldArgs};
-use crate::output::{check_distinct, check_mesh, check_writable, left_beside, say, warn};
+use crate::output::{check_distinct, check_mesh, check_writable, say, warn};
 use crate::profile::{self, ProfileArgs};
 use crate::progress::Progress;
 use crate::requirement::Requirements;
@@ -85,10 +85,7 @@ pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
         .transpose()?;
     let mut warnings = words::about_inputs(&pair);
     if let Some(file) = pair.source.file() {
-        file.check_writable(&args.output)?;
-        warnings.extend(args.morphs.left_behind(file, &args.output));
-        warnings.extend(file.lost_in(&args.output));
-        warnings.extend(left_beside(file, &args.output));
+        warnings.extend(args.morphs.check_output(file, &args.output)?);
     }
     let parts = args.parts.resolve(&pair)?;
     warnings.extend(words::notes(&parts.notes));

@@ -178,7 +178,8 @@ fn report(made: Replayed) -> Result<String> {
     let outcome = Outcome::of_shapes(made.pair, made.preset, made.initial, made.draped)?;
     let findings = outcome.pair.findings();
     let findings = findings.iter().map(ToString::to_string);
-    let left_out = outcome.pair.target.notes().iter().map(ToString::to_string);
+    let notes = outcome.pair.notes();
+    let left_out = notes.iter().map(ToString::to_string);
     let warnings: Vec<String> = findings.chain(left_out).collect();
     let page = Page {
         title: "A drape made in the studio",

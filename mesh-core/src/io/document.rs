@@ -5,6 +5,7 @@ use std::path::Path;
 
 use super::contents::{Contents, Morphs};
 use super::fault::{Fault, Unwritable};
+use super::finding::Finding;
 use super::uvs::CornerUvs;
 use crate::{Point3, PolygonSoup, Vector3};
 
@@ -22,6 +23,8 @@ pub(super) struct Codec {
     pub(super) has_uvs: bool,
     /// Whether bytes begin as no file of another format does.
     pub(super) has_mark: fn(&[u8]) -> bool,
+    /// Whether every sound file of this format has its mark.
+    pub(super) is_always_marked: bool,
     /// Whether the first statement of a file without a mark is one of this format.
     pub(super) has_statement: fn(&[u8]) -> bool,
     /// Reads the content of the file called so.
@@ -54,6 +57,7 @@ impl Geometry {
 pub(super) struct Parsed {
     pub(super) soup: PolygonSoup,
     pub(super) contents: Contents,
+    pub(super) findings: Vec<Finding>,
     pub(super) document: Box<dyn Document>,
 }
 

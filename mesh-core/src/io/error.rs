@@ -3,8 +3,9 @@
 use std::error::Error;
 use std::fmt;
 use std::io;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
+use super::printable::printable;
 use crate::TopologyError;
 
 /// A file that could not be read: which, where in it, and why.
@@ -20,7 +21,7 @@ pub struct ReadError {
 
 impl fmt::Display for ReadError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}{}: {}", self.path.display(), self.place, self.problem)
+        write!(f, "{}{}: {}", named(&self.path), self.place, self.problem)
     }
 }
 
@@ -62,7 +63,9 @@ impl fmt::Display for Place {
         match self {
             Self::File => Ok(()),
             Self::Line(line) => write!(f, ":{line}"),
-            Self::Row { element, row } => write!(f, ": {element} {row} (counted from 0)"),
+            Self::Row { element, row } => {
+                write!(f, ": {} {row} (counted from 0)", printable(element))
+            }
         }
     }
 }
@@ -74,6 +77,15 @@ pub enum ReadProblem {
     /// The operating system refused.
     #[error("cannot be read")]
     Io(#[source] io::Error),
+    /// A terminal, a disk, an endless source of zeros.
+    #[error("a device cannot be read; give a file or a pipe")]
+    Device,
+    /// A pipe that gives more than is read of one.
+    #[error("more than {} GiB from what is not a file; save it as a file first", most >> 30)]
+    Endless {
+        /// How many bytes are read at most.
+        most: u64,
+    },
     /// Not a whole gzip file.
     #[error("cannot be unpacked; is the file complete")]
     Packed(#[source] io::Error),
@@ -87,13 +99,16 @@ pub enum ReadProblem {
     #[error("not a mesh format known here; give an OBJ, PLY, STL, OFF, glTF, GLB or XYZ file with its usual extension")]
     UnknownFormat,
     /// Binary data where text was expected.
-    #[error("binary data in what should be text; is this really an {format} file")]
+    #[error(
+        "binary data in what should be text; is this really {} file",
+        with_article(format)
+    )]
     Binary {
         /// The format that content or extension promised.
         format: &'static str,
     },
     /// There is no vertex.
-    #[error("no vertex in it; is this really an {format} file")]
+    #[error("no vertex in it; is this really {} file", with_article(format))]
     NoVertices {
         /// The format that content or extension promised.
         format: &'static str,
@@ -113,11 +128,31 @@ pub enum ReadProblem {
         text: String,
     },
     /// A coordinate that is NaN or infinite.
-    #[error("the coordinate `{text}` is not finite; repair or remove this vertex")]
+    #[error(
+        "the coordinate `{text}` is {}; repair or remove this vertex",
+        not_finite(text)
+    )]
     NotFinite {
         /// What the file says.
         text: String,
     },
+    /// A coordinate whose powers no number can hold, so that no area could be measured.
+    #[error("the coordinate `{text}` is too large to measure with (more than {most:e}); scale the mesh down")]
+    TooLarge {
+        /// What the file says.
+        text: String,
+        /// The largest coordinate that is read.
+        most: f64,
+    },
+    /// Vertices so near each other that no number can hold their areas.
+    #[error("all vertices lie within {size:e} of each other, too small to measure with; scale the mesh up")]
+    TooSmall {
+        /// The longest side of their box.
+        size: f64,
+    },
+    /// Text in an encoding that it does not keep to.
+    #[error("the text is not whole in its encoding (UTF-16); save it as UTF-8")]
+    Encoding,
     /// The line or file ends too early.
     #[error("ends where {expected} was expected")]
     EndsEarly {
@@ -138,7 +173,8 @@ pub enum ReadProblem {
     },
     /// A header that promises more than the file can hold.
     #[error(
-        "{count} {element} are promised, more than the {bytes} bytes left in the file can hold"
+        "{count} {} are promised, more than the {bytes} bytes left in the file can hold",
+        printable(element)
     )]
     Oversized {
         /// What is promised.
@@ -152,7 +188,7 @@ pub enum ReadProblem {
     #[error("more vertices or faces than a 32-bit index can name; split the file")]
     TooMany,
     /// A correct file with something in it that is not read here.
-    #[error("{feature} cannot be read; {advice}")]
+    #[error("{} cannot be read; {advice}", printable(feature))]
     Unsupported {
         /// What the file uses.
         feature: String,
@@ -161,12 +197,36 @@ pub enum ReadProblem {
     },
 }
 
+/// A path as it may be shown.
+fn named(path: &Path) -> String {
+    printable(&path.to_string_lossy()).into_owned()
+}
+
+/// `an OBJ`, `a PLY`: as the name is spoken.
+fn with_article(format: &str) -> String {
+    let is_spoken_with_vowel = matches!(format, "OBJ" | "OFF" | "STL" | "XYZ");
+    let article = if is_spoken_with_vowel { "an" } else { "a" };
+    format!("{article} {format}")
+}
+
+/// What a number is that is not finite.
+fn not_finite(text: &str) -> &'static str {
+    let text = text.to_ascii_lowercase();
+    if text.contains("nan") {
+        "not a number"
+    } else if text.contains("inf") {
+        "infinite"
+    } else {
+        "too large for a number"
+    }
+}
+
 /// A file that could not be written.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum WriteError {
     /// The operating system refused.
-    #[error("{}: cannot be written", path.display())]
+    #[error("{}: cannot be written", named(path))]
     Io {
         /// The file.
         path: PathBuf,
@@ -175,7 +235,10 @@ pub enum WriteError {
         source: io::Error,
     },
     /// The extension names no format that this can be written in.
-    #[error("{}: cannot be written in the format of this extension; use one of {known}", path.display())]
+    #[error(
+        "{}: cannot be written in the format of this extension; use one of {known}",
+        named(path)
+    )]
     UnknownFormat {
         /// The file.
         path: PathBuf,
@@ -183,7 +246,7 @@ pub enum WriteError {
         known: &'static str,
     },
     /// The source holds something that cannot take new positions.
-    #[error("{}: {feature} cannot take new positions; {advice}", path.display())]
+    #[error("{}: {feature} cannot take new positions; {advice}", named(path))]
     Unsupported {
         /// The source file.
         path: PathBuf,
@@ -193,7 +256,10 @@ pub enum WriteError {
         advice: &'static str,
     },
     /// Not one position per vertex of the file.
-    #[error("{}: {found} positions for the {expected} vertices of the source", path.display())]
+    #[error(
+        "{}: {found} positions for the {expected} vertices of the source",
+        named(path)
+    )]
     WrongCount {
         /// The file.
         path: PathBuf,
@@ -203,7 +269,10 @@ pub enum WriteError {
         found: usize,
     },
     /// A position that the file cannot hold.
-    #[error("{}: the position of vertex {vertex} (counted from 0) is not a number this file can hold", path.display())]
+    #[error(
+        "{}: the position of vertex {vertex} (counted from 0) is not a number this file can hold",
+        named(path)
+    )]
     NotFinite {
         /// The file.
         path: PathBuf,
@@ -211,7 +280,7 @@ pub enum WriteError {
         vertex: usize,
     },
     /// A face that names a vertex that is not there.
-    #[error("{}: cannot be written", path.display())]
+    #[error("{}: cannot be written", named(path))]
     Faces {
         /// The file.
         path: PathBuf,

@@ -1,16 +1,17 @@
 //! A file in memory: what it holds, and the way back.
 
-use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::contents::{unit, Contents, Morphs};
 use super::document::{Document, Parsed, Unmovable};
+use super::encoding::Encoding;
 use super::error::{ReadError, ReadProblem, WriteError};
-use super::fault::Fault;
+use super::fault::{check_size, Fault};
+use super::finding::Finding;
 use super::format::Format;
 use super::save::{check_finite, encode, packed_as_named, write_atomic};
-use super::{conversion, gzip};
+use super::{conversion, encoding, gzip, input};
 use crate::{Point3, PolygonSoup, Positions, Vector3};
 
 /// A mesh file in memory, with everything needed to write it back with new positions.
@@ -18,8 +19,10 @@ use crate::{Point3, PolygonSoup, Positions, Vector3};
 pub struct MeshFile {
     path: PathBuf,
     format: Format,
+    encoding: Encoding,
     soup: PolygonSoup,
     contents: Contents,
+    findings: Vec<Finding>,
     document: Arc<dyn Document>,
     morphs: Morphs,
 }
@@ -35,7 +38,8 @@ pub struct PointSet {
 
 /// Reads a mesh, and keeps its bytes so that it can be written back.
 ///
-/// A file without a face is read (it may be a cloud); a file without a vertex is not.
+/// A file without a face is read (it may be a cloud); a file without a vertex is not. Of a pipe at most 4 GiB are
+/// read; a device is refused.
 ///
 /// ```
 /// use mesh_core::{io, Positions};
@@ -57,7 +61,7 @@ pub struct PointSet {
 /// The first thing that is wrong with the file, and where.
 pub fn read_mesh(path: impl AsRef<Path>) -> Result<MeshFile, ReadError> {
     let path = path.as_ref();
-    let bytes = fs::read(path).map_err(|e| Fault::whole(ReadProblem::Io(e)).of(path))?;
+    let bytes = input::read(path).map_err(|fault| fault.of(path))?;
     MeshFile::from_bytes(path, bytes)
 }
 
@@ -92,12 +96,15 @@ impl MeshFile {
             true => gzip::unpack(&bytes).map_err(|fault| fault.of(path))?,
             false => bytes,
         };
+        let (bytes, encoding) = encoding::decode(bytes).map_err(|fault| fault.of(path))?;
         let (format, parsed) = parse(bytes, path).map_err(|fault| fault.of(path))?;
         Ok(Self {
             path: path.to_owned(),
             format,
+            encoding,
             soup: parsed.soup,
             contents: parsed.contents,
+            findings: parsed.findings,
             document: parsed.document.into(),
             morphs: Morphs::Keep,
         })
@@ -131,6 +138,11 @@ impl MeshFile {
     /// What else is in it.
     pub fn contents(&self) -> &Contents {
         &self.contents
+    }
+
+    /// What was not read, or not as the file says of itself; whoever shows the mesh should show these, too.
+    pub fn findings(&self) -> &[Finding] {
+        &self.findings
     }
 
     /// One unit normal per vertex, if the file has normals; zero where a vertex has none.
@@ -235,7 +247,8 @@ impl MeshFile {
             self.check_writable(path)?;
         }
         let rewritten = self.document.rewrite(&self.soup, moved, self.morphs);
-        Ok(rewritten.map_err(|fault| fault.of(&self.path))?)
+        let rewritten = rewritten.map_err(|fault| fault.of(&self.path))?;
+        Ok(self.encoding.encode(rewritten))
     }
 
     /// What would be lost if this file were written to `path`, in words; none if all is kept.
@@ -256,13 +269,16 @@ fn parse(bytes: Vec<u8>, path: &Path) -> Result<(Format, Parsed), Fault> {
         Format::detect(&bytes, path).ok_or_else(|| Fault::whole(ReadProblem::UnknownFormat))?;
     let codec = format.codec();
     let name = codec.name;
-    if codec.is_text && bytes.contains(&0) {
+    // Zeros at the end are padding.
+    let n_zeros = bytes.iter().rev().take_while(|&&b| b == 0).count();
+    if codec.is_text && bytes[..bytes.len() - n_zeros].contains(&0) {
         return Err(Fault::whole(ReadProblem::Binary { format: name }));
     }
     let parsed = (codec.read)(bytes, path)?;
     if parsed.soup.positions.is_empty() {
         return Err(Fault::whole(ReadProblem::NoVertices { format: name }));
     }
+    check_size(&parsed.soup.positions)?;
     let most = u32::MAX as usize;
     if parsed.soup.positions.len() >= most || parsed.soup.faces.len() >= most {
         return Err(Fault::whole(ReadProblem::TooMany));

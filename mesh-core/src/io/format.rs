@@ -51,12 +51,15 @@ impl Format {
         ALL.into_iter().find(is_named)
     }
 
-    /// The format of a file of these bytes; OBJ has no mark of its own, so there the extension speaks first.
+    /// The format of a file of these bytes: the one whose mark they bear, or else the one that the extension names
+    /// unless its files all bear a mark, or else the one whose statement comes first.
     pub(super) fn detect(bytes: &[u8], path: &Path) -> Option<Self> {
-        let first = |holds: fn(Self, &[u8]) -> bool| ALL.into_iter().find(|f| holds(*f, bytes));
-        first(|format, bytes| (format.codec().has_mark)(bytes))
-            .or_else(|| Self::of_extension(path))
-            .or_else(|| first(|format, bytes| (format.codec().has_statement)(bytes)))
+        let named = Self::of_extension(path);
+        let marked = ALL.into_iter().find(|f| (f.codec().has_mark)(bytes));
+        marked
+            .or_else(|| named.filter(|f| !f.codec().is_always_marked))
+            .or_else(|| ALL.into_iter().find(|f| (f.codec().has_statement)(bytes)))
+            .or(named)
     }
 
     /// How files of this format are read and made.

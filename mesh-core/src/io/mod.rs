@@ -16,28 +16,33 @@
 //!
 //! | format | read | changed when written back |
 //! |---|---|---|
-//! | OBJ | polygons of any arity, negative indices, continued lines | `v`, `vn` |
+//! | OBJ | polygons of any arity, negative indices, continued lines; UTF-8 or UTF-16 | `v`, `vn` |
 //! | PLY | ascii and binary in both orders, any elements and properties, strips | `x y z`, `nx ny nz` of the vertices |
 //! | OFF | OFF, COFF, NOFF, STOFF and their combinations, as text | coordinates, normals |
 //! | STL | text and binary; equal corners become one vertex | corners and normals of the triangles that moved |
-//! | glTF, GLB | the scene's meshes where their nodes put them; packed, interleaved, normalised and sparse data | POSITION, NORMAL, TANGENT, and the bounds of POSITION |
-//! | XYZ | points and perhaps normals, between blanks, commas or semicolons | the first three columns |
+//! | glTF, GLB | the scene's meshes where their nodes and joints put them; packed, interleaved, normalised and sparse data | POSITION, NORMAL, TANGENT, and the bounds of POSITION |
+//! | XYZ | points and perhaps normals, between blanks, commas or semicolons, with points or decimal commas | the first three columns |
 //!
 //! The format is told by content first, by extension second, and any file may be packed with gzip. Every format can be
-//! written from any other; [`MeshFile::lost_in`] tells what such a conversion does not keep.
+//! written from any other; [`MeshFile::lost_in`] tells what such a conversion does not keep. What a file contradicts
+//! itself in, and what of it is not read, [`MeshFile::findings`] tells; what would be read wrong is refused.
 
 mod contents;
 mod conversion;
 mod document;
+mod encoding;
 mod error;
 mod fault;
 mod file;
+mod finding;
 mod format;
 mod gltf;
 mod gzip;
+mod input;
 mod obj;
 mod off;
 mod ply;
+mod printable;
 mod save;
 mod stl;
 mod text;
@@ -48,5 +53,7 @@ mod xyz;
 pub use contents::{Contents, Morphs, NamedFaces};
 pub use error::{Place, ReadError, ReadProblem, WriteError};
 pub use file::{read_mesh, read_points, read_soup, MeshFile, PointSet};
+pub use finding::Finding;
 pub use format::Format;
+pub use printable::printable;
 pub use save::{write_atomic, write_soup};

@@ -17,7 +17,8 @@ pub(super) const CODEC: Codec = Codec {
     is_text: true,
     geometry: Geometry::Polygons,
     has_uvs: true,
-    has_mark: |_| false,
+    has_mark,
+    is_always_marked: false,
     has_statement,
     read,
     write: |soup, uvs| Ok(write(soup, uvs)),
@@ -27,6 +28,26 @@ pub(super) const CODEC: Codec = Codec {
 #[derive(Debug)]
 struct ObjFile {
     bytes: Vec<u8>,
+}
+
+/// Whether the first statements are all of this format, and one of them a vertex.
+fn has_mark(bytes: &[u8]) -> bool {
+    const FIRST: usize = 100;
+    let mut cursor = Cursor::new(bytes);
+    for _ in 0..FIRST {
+        let Some(keyword) = next_statement(&mut cursor, || ()) else {
+            return false;
+        };
+        let mut numbers = std::iter::from_fn(|| cursor.field()).map_while(|f| number(f.text));
+        match keyword.text {
+            b"v" => return numbers.by_ref().take(3).count() == 3,
+            b"vn" | b"vt" | b"vp" if numbers.next().is_some() => {}
+            b"mtllib" | b"usemtl" | b"o" | b"g" | b"s" | b"f" => {}
+            _ => return false,
+        }
+        cursor.next_line();
+    }
+    false
 }
 
 fn has_statement(bytes: &[u8]) -> bool {
@@ -180,6 +201,7 @@ impl Reader {
         Ok(Parsed {
             soup: self.soup,
             contents: self.contents,
+            findings: Vec::new(),
             document: Box::new(ObjFile { bytes }),
         })
     }

@@ -16,6 +16,7 @@ pub(super) const CODEC: Codec = Codec {
     geometry: Geometry::Polygons,
     has_uvs: false,
     has_mark,
+    is_always_marked: false,
     has_statement: |_| false,
     read,
     write: |soup, _| Ok(write(soup)),
@@ -81,6 +82,7 @@ fn read(bytes: Vec<u8>, _: &Path) -> Result<Parsed, Fault> {
     Ok(Parsed {
         contents: contents(&bytes, &header),
         soup,
+        findings: Vec::new(),
         document: Box::new(OffFile {
             bytes,
             header,

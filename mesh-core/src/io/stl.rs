@@ -7,6 +7,7 @@ use super::contents::{polygon_area_vector, unit, Contents, Morphs, NameRuns};
 use super::document::{Codec, Document, Geometry, Parsed};
 use super::error::{Place, ReadProblem};
 use super::fault::{excerpt, Fault, Unwritable};
+use super::finding::Finding;
 use super::text::{number, Cursor, Field, Splice};
 use super::triangles::Triangles;
 use crate::weld::weld_points;
@@ -19,6 +20,7 @@ pub(super) const CODEC: Codec = Codec {
     geometry: Geometry::SeparateTriangles,
     has_uvs: false,
     has_mark: |bytes| is_binary(bytes) || is_text(bytes),
+    is_always_marked: true,
     has_statement: |_| false,
     read,
     write: |soup, _| write(soup),
@@ -41,18 +43,14 @@ fn is_binary(bytes: &[u8]) -> bool {
         .is_some_and(|n| BINARY_HEADER as u64 + n * BINARY_FACET as u64 == bytes.len() as u64)
 }
 
-/// Whether this begins like a text file.
+/// Whether this begins like a text file: `solid`, and soon a facet or the end.
 fn is_text(bytes: &[u8]) -> bool {
+    const SOON: usize = 200;
     let mut cursor = Cursor::new(bytes);
-    let is_solid = cursor
-        .word()
-        .is_some_and(|w| w.text.eq_ignore_ascii_case(b"solid"));
-    cursor.next_line();
-    is_solid
-        && cursor
-            .word()
-            .is_some_and(|w| is_word(w, &["facet", "endsolid"]))
-        && !bytes.contains(&0)
+    let mut words = std::iter::from_fn(|| cursor.word());
+    let is_solid = words.next().is_some_and(|w| is_word(w, &["solid"]));
+    let is_begun = |w| is_word(w, &["facet", "endsolid"]);
+    is_solid && words.take(SOON).any(is_begun) && !bytes.contains(&0)
 }
 
 fn n_binary_facets(bytes: &[u8]) -> Option<u64> {
@@ -94,7 +92,11 @@ impl Corners {
 /// Reads a file: triangles in their order, equal corners as one vertex.
 fn read(bytes: Vec<u8>, _: &Path) -> Result<Parsed, Fault> {
     let mut solids = NameRuns::default();
-    let corners = corners(&bytes, &mut solids)?;
+    let mut findings = Vec::new();
+    let corners = match is_text(&bytes) && !is_binary(&bytes) {
+        true => text_corners(&bytes, &mut solids, &mut findings)?,
+        false => binary_corners(&bytes, &mut findings)?,
+    };
     let n_faces = corners.faces.len();
     let (soup, row_of_corner) = corners.welded();
     Ok(Parsed {
@@ -103,6 +105,7 @@ fn read(bytes: Vec<u8>, _: &Path) -> Result<Parsed, Fault> {
             objects: solids.finish(n_faces),
             ..Contents::default()
         },
+        findings,
         document: Box::new(StlFile {
             bytes,
             row_of_corner,
@@ -110,27 +113,153 @@ fn read(bytes: Vec<u8>, _: &Path) -> Result<Parsed, Fault> {
     })
 }
 
-fn corners(bytes: &[u8], solids: &mut NameRuns) -> Result<Corners, Fault> {
+fn text_corners(
+    bytes: &[u8],
+    solids: &mut NameRuns,
+    findings: &mut Vec<Finding>,
+) -> Result<Corners, Fault> {
     let mut corners = Corners::default();
-    if is_text(bytes) && !is_binary(bytes) {
-        each_word(bytes, |word, cursor| {
-            if is_word(word, &["solid"]) {
-                solids.start(std::iter::once(cursor.rest_of_line()), corners.faces.len());
-            } else if is_word(word, &["vertex"]) {
+    let mut is_open = false;
+    each_statement(bytes, |statement, cursor| {
+        is_open = statement != Statement::EndSolid;
+        match statement {
+            Statement::Solid(name) => solids.start(std::iter::once(name), corners.faces.len()),
+            Statement::Vertex(fields) => {
                 let mut p = Point3::origin();
-                for axis in 0..3 {
-                    let field = cursor.word();
+                for (axis, field) in fields.into_iter().enumerate() {
                     p[axis] = cursor.coordinate(field)?;
                 }
                 corners.points.push(p);
-            } else if is_word(word, &["endfacet"]) {
-                corners.close_face();
             }
-            Ok(())
-        })?;
-        return Ok(corners);
+            Statement::EndFacet => corners.close_face(),
+            Statement::Normal(_) | Statement::EndSolid => {}
+        }
+        Ok(())
+    })?;
+    if corners.points.len() > corners.n_closed as usize {
+        let expected = "the rest of a facet, up to `endfacet`,";
+        return Err(Fault::in_text(
+            bytes,
+            bytes.len(),
+            ReadProblem::EndsEarly { expected },
+        ));
     }
+    findings.extend(is_open.then_some(Finding::NoEnd));
+    Ok(corners)
+}
+
+/// What a text file says, as far as it matters here.
+#[derive(PartialEq)]
+enum Statement<'a> {
+    Solid(&'a [u8]),
+    /// A facet begins, with the fields of its normal, if it has one.
+    Normal([Option<Field<'a>>; 3]),
+    Vertex([Option<Field<'a>>; 3]),
+    EndFacet,
+    EndSolid,
+}
+
+/// Calls `visit` with each statement; lines are as good as blanks, but for names, comments and colours. What follows a
+/// statement on its line and is none is passed over.
+fn each_statement<'a>(
+    bytes: &'a [u8],
+    mut visit: impl FnMut(Statement<'a>, &Cursor<'a>) -> Result<(), Fault>,
+) -> Result<(), Fault> {
+    let mut cursor = Cursor::new(bytes);
+    let mut is_begun = false;
+    while let Some(word) = next_word(&mut cursor, &mut is_begun) {
+        let statement = if is_word(word, &["solid"]) {
+            Statement::Solid(solid_name(&mut cursor))
+        } else if is_word(word, &["facet"]) {
+            Statement::Normal(normal_fields(&mut cursor))
+        } else if is_word(word, &["vertex"]) {
+            Statement::Vertex([(); 3].map(|()| cursor.word()))
+        } else if is_word(word, &["endfacet"]) {
+            Statement::EndFacet
+        } else if is_word(word, &["endsolid"]) {
+            solid_name(&mut cursor);
+            Statement::EndSolid
+        } else if is_word(word, &["outer", "loop", "endloop"]) {
+            continue;
+        } else if is_begun || is_remark(word) {
+            while cursor.field().is_some() {}
+            continue;
+        } else {
+            let (expected, text) = ("a word of an STL file", excerpt(word.text));
+            return Err(cursor.fault_at(word, ReadProblem::Unexpected { expected, text }));
+        };
+        is_begun = true;
+        visit(statement, &cursor)?;
+    }
+    Ok(())
+}
+
+/// The next word; `is_begun` becomes false where it is the first of its line.
+fn next_word<'a>(cursor: &mut Cursor<'a>, is_begun: &mut bool) -> Option<Field<'a>> {
+    cursor.field().or_else(|| {
+        *is_begun = false;
+        cursor.word()
+    })
+}
+
+/// Lines that some programs put between the others: comments, and colours of facets, which are not read.
+fn is_remark(word: Field<'_>) -> bool {
+    let is_comment = |mark: &&str| word.text.starts_with(mark.as_bytes());
+    ["//", ";"].iter().any(is_comment) || is_word(word, &["color", "colour", "comment"])
+}
+
+/// The name behind `solid` or `endsolid`: the rest of the line, where all is on one line up to the next statement.
+fn solid_name<'a>(cursor: &mut Cursor<'a>) -> &'a [u8] {
+    let mut behind = cursor.clone();
+    let mut start = None;
+    while let Some(field) = behind.field() {
+        let start = *start.get_or_insert(field.at);
+        let mut next = behind.clone();
+        let is_facet = is_word(field, &["facet"])
+            && next
+                .field()
+                .is_some_and(|f| is_word(f, &["normal", "outer"]))
+            && next
+                .field()
+                .is_some_and(|f| is_word(f, &["loop"]) || number(f.text).is_some());
+        let is_end = is_word(field, &["endsolid", "solid"]) && field.at > start;
+        if is_facet || is_end {
+            *cursor = Cursor::starting_at(cursor.bytes(), field.at);
+            return cursor.bytes()[start..field.at].trim_ascii_end();
+        }
+    }
+    cursor.rest_of_line()
+}
+
+/// The three numbers behind `facet normal`.
+fn normal_fields<'a>(cursor: &mut Cursor<'a>) -> [Option<Field<'a>>; 3] {
+    let mut ahead = cursor.clone();
+    if !ahead.word().is_some_and(|word| is_word(word, &["normal"])) {
+        return [None; 3];
+    }
+    *cursor = ahead.clone();
+    let mut fields = [None; 3];
+    for field in &mut fields {
+        *field = ahead.word().filter(|f| number(f.text).is_some());
+        if field.is_none() {
+            break;
+        }
+        *cursor = ahead.clone();
+    }
+    fields
+}
+
+fn binary_corners(bytes: &[u8], findings: &mut Vec<Finding>) -> Result<Corners, Fault> {
     let n = checked_facets(bytes)?;
+    let stated = n_binary_facets(bytes).unwrap_or(0);
+    let n_behind = bytes.len() - BINARY_HEADER - n * BINARY_FACET;
+    if stated != n as u64 {
+        let found = n as u64;
+        findings.push(Finding::WrongCount { stated, found });
+    } else if n_behind >= BINARY_FACET {
+        findings.push(Finding::BytesBehind { n_bytes: n_behind });
+    }
+    let mut corners = Corners::default();
     corners.points.reserve_exact(3 * n);
     corners.faces.reserve_exact(n);
     for row in 0..n {
@@ -142,32 +271,26 @@ fn corners(bytes: &[u8], solids: &mut NameRuns) -> Result<Corners, Fault> {
     Ok(corners)
 }
 
-fn each_word<'a>(
-    bytes: &'a [u8],
-    mut visit: impl FnMut(Field<'a>, &mut Cursor<'a>) -> Result<(), Fault>,
-) -> Result<(), Fault> {
-    const KNOWN: [&str; 8] = [
-        "solid", "facet", "outer", "loop", "vertex", "endloop", "endfacet", "endsolid",
-    ];
-    let mut cursor = Cursor::new(bytes);
-    while let Some(word) = cursor.word() {
-        if !is_word(word, &KNOWN) {
-            let (expected, text) = ("a word of an STL file", excerpt(word.text));
-            return Err(cursor.fault_at(word, ReadProblem::Unexpected { expected, text }));
-        }
-        visit(word, &mut cursor)?;
-        if !is_word(word, &["outer"]) {
-            cursor.next_line();
-        }
-    }
-    Ok(())
-}
-
+/// How many triangles a binary file holds: as many as its header states, or all there are where no byte is left over.
 fn checked_facets(bytes: &[u8]) -> Result<usize, Fault> {
+    if bytes
+        .iter()
+        .all(|b| b.is_ascii_graphic() || b.is_ascii_whitespace())
+    {
+        let (expected, text) = ("`solid` or a binary STL file", excerpt(bytes.trim_ascii()));
+        return Err(Fault::in_text(
+            bytes,
+            0,
+            ReadProblem::Unexpected { expected, text },
+        ));
+    }
     let expected = "the number of triangles of a binary STL, at byte 80";
     let count =
         n_binary_facets(bytes).ok_or_else(|| Fault::whole(ReadProblem::EndsEarly { expected }))?;
     let left = bytes.len() - BINARY_HEADER;
+    if left > 0 && left.is_multiple_of(BINARY_FACET) {
+        return Ok(left / BINARY_FACET);
+    }
     if count * BINARY_FACET as u64 > left as u64 {
         let element = "triangles".to_owned();
         return Err(Fault::whole(ReadProblem::Oversized {
@@ -256,25 +379,25 @@ impl New<'_> {
 fn rewrite_text(bytes: &[u8], new: &New<'_>) -> Result<Vec<u8>, Fault> {
     let mut splice = Splice::new(bytes);
     let (mut corner, mut face) = (0, 0);
-    each_word(bytes, |word, cursor| {
-        if is_word(word, &["facet"]) {
-            let has_normal = cursor.field().is_some_and(|f| is_word(f, &["normal"]));
-            for &coordinate in new.normal(face).iter().filter(|_| has_normal).flatten() {
-                let field = cursor.field().filter(|f| number(f.text).is_some());
-                if let Some(field) = field {
+    each_statement(bytes, |statement, _| {
+        match statement {
+            Statement::Normal(fields) => {
+                let normal = new.normal(face);
+                let numbers = normal.iter().flatten().zip(fields.into_iter().flatten());
+                for (&coordinate, field) in numbers {
                     splice.replace_text(field.range(), coordinate);
                 }
             }
-        } else if is_word(word, &["vertex"]) {
-            for axis in 0..3 {
-                let field = cursor.word();
-                if let Some((field, x)) = field.zip(new.coordinate(corner, axis)) {
-                    splice.replace_text(field.range(), x);
+            Statement::Vertex(fields) => {
+                for (axis, field) in fields.into_iter().enumerate() {
+                    if let Some((field, x)) = field.zip(new.coordinate(corner, axis)) {
+                        splice.replace_text(field.range(), x);
+                    }
                 }
+                corner += 1;
             }
-            corner += 1;
-        } else if is_word(word, &["endfacet"]) {
-            face += 1;
+            Statement::EndFacet => face += 1,
+            Statement::Solid(_) | Statement::EndSolid => {}
         }
         Ok(())
     })?;

@@ -5,10 +5,10 @@ use std::io::Write;
 use std::ops::Range;
 
 use super::error::ReadProblem;
-use super::fault::{excerpt, Fault};
+use super::fault::{checked_coordinate, excerpt, Fault};
 
 /// A run of bytes between blanks, and where it starts.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Field<'a> {
     pub(super) text: &'a [u8],
     pub(super) at: usize,
@@ -42,6 +42,11 @@ impl<'a> Cursor<'a> {
     /// A cursor at byte `at`.
     pub(super) fn starting_at(bytes: &'a [u8], at: usize) -> Self {
         Self { bytes, at }
+    }
+
+    /// All of the text.
+    pub(super) fn bytes(&self) -> &'a [u8] {
+        self.bytes
     }
 
     /// The byte it stands before.
@@ -162,11 +167,11 @@ impl<'a> Cursor<'a> {
             return Err(self.fault(ReadProblem::EndsEarly { expected }));
         };
         let text = || excerpt(field.text);
-        match number(field.text) {
-            Some(x) if x.is_finite() => Ok(x),
-            Some(_) => Err(self.fault_at(field, ReadProblem::NotFinite { text: text() })),
-            None => Err(self.fault_at(field, ReadProblem::NotANumber { text: text() })),
-        }
+        let checked = match number(field.text) {
+            Some(x) => checked_coordinate(x, text),
+            None => Err(ReadProblem::NotANumber { text: text() }),
+        };
+        checked.map_err(|problem| self.fault_at(field, problem))
     }
 
     /// `field` as a count or index from 0.
@@ -176,7 +181,9 @@ impl<'a> Cursor<'a> {
         expected: &'static str,
     ) -> Result<u64, Fault> {
         let field = field.ok_or_else(|| self.fault(ReadProblem::EndsEarly { expected }))?;
+        let whole = |x: f64| (x.fract() == 0.0 && x.abs() < 1e15).then_some(x as i64);
         integer(field.text)
+            .or_else(|| number(field.text).and_then(whole))
             .and_then(|n| u64::try_from(n).ok())
             .ok_or_else(|| {
                 let text = excerpt(field.text);

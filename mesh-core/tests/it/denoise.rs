@@ -3,7 +3,7 @@
 use mesh_core::{shapes, Point3, PointCloud, TargetSurface};
 
 fn cloud(points: Vec<Point3>) -> PointCloud {
-    PointCloud::new(points, None).unwrap()
+    PointCloud::new(points, None).expect("points make a cloud")
 }
 
 /// A ball of 2 562 points, 0.07 apart, off by up to `noise`.

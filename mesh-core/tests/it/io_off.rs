@@ -76,7 +76,7 @@ fn each_fault_names_its_line() {
             4,
             "corners are promised",
         ),
-        ("OFF\n1 1 0\n0 0 nan\n3 0 0 0\n", 3, "not finite"),
+        ("OFF\n1 1 0\n0 0 nan\n3 0 0 0\n", 3, "`nan` is not a number"),
         (
             "OFF\n1 1 0\n0 0 0\n3 0 0 1\n",
             4,

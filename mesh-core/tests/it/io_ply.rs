@@ -190,7 +190,7 @@ fn each_fault_of_a_text_is_told() {
         ),
         (
             with("0.0 0 0 1 0 0 .5", "nan 0 0 1 0 0 .5"),
-            "`NaN` is not finite",
+            "`nan` is not a number",
         ),
         (
             "ply\nformat ascii 1.0\nelement vertex 1".to_owned(),

@@ -3,7 +3,7 @@
 use mesh_core::{shapes, FaceId, PolygonSoup, Positions, Triangulation, VertexId};
 
 fn built(soup: PolygonSoup) -> (Triangulation, Positions) {
-    let (mesh, rest) = soup.into_halfedge().unwrap();
+    let (mesh, rest) = soup.into_halfedge().expect("the shape is a mesh");
     (Triangulation::new(&mesh, &rest), rest)
 }
 

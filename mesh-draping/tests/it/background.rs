@@ -12,7 +12,7 @@ const PATIENCE: Duration = Duration::from_secs(120);
 fn start(n_iterations: usize) -> Background {
     let pair = ball_and_ellipsoid(6);
     let transfer = Transfer::of_pair(pair, short(n_iterations));
-    transfer.start().unwrap().spawn()
+    transfer.start().expect("the drape starts").spawn()
 }
 
 fn wait_for(background: &Background, is_there: impl Fn(&BackgroundStatus) -> bool) {

@@ -7,12 +7,14 @@ use crate::support::{ball_and_ellipsoid, same_bits, short};
 
 fn start() -> Draping {
     let pair = ball_and_ellipsoid(6);
-    Transfer::of_pair(pair, short(12)).start().unwrap()
+    let transfer = Transfer::of_pair(pair, short(12));
+    transfer.start().expect("the drape starts")
 }
 
 fn steps(draping: &mut Draping, n: usize) {
     for _ in 0..n {
-        assert!(draping.step().unwrap().is_some());
+        let step = draping.step().expect("the drape goes on");
+        assert!(step.is_some());
     }
 }
 

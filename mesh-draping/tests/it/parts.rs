@@ -11,10 +11,11 @@ fn ball_with_an_eye() -> Pair {
     add(&mut text, &outer, 1.0, 0);
     text += "o eye\n";
     add(&mut text, &inner, 0.3, outer.positions.len());
-    let file = MeshFile::from_bytes("eye.obj", text.into_bytes()).unwrap();
+    let file = MeshFile::from_bytes("eye.obj", text.into_bytes());
+    let file = file.expect("the text is an OBJ file");
     Pair {
-        source: Source::of_file(file, Seams::EXACT).unwrap(),
-        target: Target::of_soup(shapes::icosphere(3)).unwrap(),
+        source: Source::of_file(file, Seams::EXACT).expect("balls are a mesh"),
+        target: Target::of_soup(shapes::icosphere(3)).expect("a ball is a surface"),
         landmarks: Vec::new(),
     }
 }

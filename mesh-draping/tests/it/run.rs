@@ -8,12 +8,13 @@ use crate::support::{ball_and_ellipsoid, same_bits, short};
 fn run(pair: &Pair, preset: &Preset) -> Outcome {
     Transfer::of_pair(pair.clone(), preset.clone())
         .run()
-        .unwrap()
+        .expect("the pair can be draped")
 }
 
 fn run_with_threads(pair: &Pair, preset: &Preset, n: usize) -> Outcome {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(n).build();
-    pool.unwrap().install(|| run(pair, preset))
+    let pool = pool.expect("threads can be started");
+    pool.install(|| run(pair, preset))
 }
 
 #[test]

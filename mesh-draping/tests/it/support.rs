@@ -25,10 +25,10 @@ fn stretched(p: &Point3) -> Point3 {
 
 /// A ball of quads with `n` along each side, six places of which are marked on an ellipsoid.
 pub(crate) fn ball_and_ellipsoid(n: usize) -> Pair {
-    let source = Source::of_soup(shapes::quad_sphere(n), Seams::EXACT).unwrap();
+    let source = Source::of_soup(shapes::quad_sphere(n), Seams::EXACT).expect("a ball is a mesh");
     let landmarks = landmarks(source.rest());
     Pair {
-        target: Target::of_soup(ellipsoid()).unwrap(),
+        target: Target::of_soup(ellipsoid()).expect("an ellipsoid is a surface"),
         source,
         landmarks,
     }
@@ -39,7 +39,7 @@ fn landmarks(rest: &Positions) -> Vec<Landmark> {
     let farthest = |axis: usize, sign: f64| {
         let along = |v: &VertexId| sign * rest[*v][axis];
         let v = rest.ids().max_by(|a, b| along(a).total_cmp(&along(b)));
-        let v = v.unwrap();
+        let v = v.expect("a ball has vertices");
         Landmark::new(v, stretched(&rest[v]))
     };
     [0, 1, 2]

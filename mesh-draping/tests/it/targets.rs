@@ -1,7 +1,8 @@
 //! What is no part of a target is left out, and said as a value.
 
+use mesh_draping::mesh_core::io::{Finding, MeshFile};
 use mesh_draping::mesh_core::{shapes, Point3};
-use mesh_draping::{Error, Note, Target};
+use mesh_draping::{Error, Note, Seams, Shape, Source, Target};
 
 #[test]
 fn a_clean_target_says_nothing() {
@@ -15,6 +16,26 @@ fn a_clean_target_says_nothing() {
         assert_eq!(target.vertices(), soup.positions);
         assert!(!target.is_cloud() && target.kept_points().is_empty());
     }
+}
+
+#[test]
+fn what_its_file_contradicts_itself_in_is_said_of_either_shape() {
+    let text =
+        "solid\nfacet\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n";
+    let file = MeshFile::from_bytes("a.stl", text.into()).unwrap();
+    let note = |shape| Note::File {
+        shape,
+        finding: Finding::NoEnd,
+    };
+    let source = Source::of_file(file.clone(), Seams::EXACT).unwrap();
+    assert_eq!(source.notes(), [note(Shape::Source)]);
+    let target = Target::of_file(file).unwrap();
+    assert_eq!(target.notes()[0], note(Shape::Target));
+    let told = target.notes()[0].to_string();
+    assert!(
+        told.starts_with("the file of the target: it ends without"),
+        "{told}"
+    );
 }
 
 #[test]

@@ -2,4 +2,5 @@
 
 mod finite_differences;
 mod overlap;
+mod pairs;
 mod values;

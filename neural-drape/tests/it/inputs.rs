@@ -61,16 +61,28 @@ fn inputs_of_different_lengths_are_refused() {
 #[test]
 fn the_triangulation_of_another_mesh_is_refused_with_both_counts() {
     let pair = Pair::new(shapes::icosphere(1));
-    let other = Pair::new(shapes::icosphere(2));
-    let input = DrapeInput {
-        triangulation: &other.triangulation,
-        ..pair.input()
+    let (larger, smaller) = (
+        Pair::new(shapes::icosphere(2)),
+        Pair::new(shapes::icosphere(0)),
+    );
+    let of = |other: &Pair| {
+        refused(DrapeInput {
+            triangulation: &other.triangulation,
+            ..pair.input()
+        })
     };
-    let error = refused(input);
+    assert!(matches!(
+        of(&smaller),
+        DrapeError::ForeignTriangulation {
+            n_triangulated: 12,
+            ..
+        }
+    ));
+    let error = of(&larger);
     assert!(matches!(
         error,
         DrapeError::ForeignTriangulation {
-            n_named: 162,
+            n_triangulated: 162,
             n_vertices: 42
         }
     ));

@@ -133,7 +133,7 @@ fn weights_that_are_negative_or_not_finite_are_named_by_stage_and_term() {
 
 /// The settings of a preset with this change are refused by the name of one.
 fn assert_refused(preset: &str, expected: &str, change: &dyn Fn(&mut DrapeConfig)) {
-    let mut config = DrapeConfig::named(preset).unwrap();
+    let mut config = DrapeConfig::named(preset).expect("a known preset");
     change(&mut config);
     match config.check() {
         Err(DrapeError::Setting { name, .. }) => assert_eq!(name, expected),

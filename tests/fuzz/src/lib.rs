@@ -100,4 +100,8 @@ pub fn glb(bytes: &[u8]) -> Vec<u8> {
 #[cfg(feature = "drape")]
 mod drape;
 #[cfg(feature = "drape")]
+mod whole;
+#[cfg(feature = "drape")]
 pub use drape::{load_warp, read_landmarks, read_settings};
+#[cfg(feature = "drape")]
+pub use whole::drape_both_ways;

@@ -4,11 +4,8 @@ use std::collections::{BTreeMap, HashMap};
 use std::hash::{Hash, Hasher};
 use std::sync::Arc;
 
-use gltf::json::accessor::{ComponentType, Type};
-use gltf::json::validation::Checked;
-use gltf::json::{buffer, Index};
-
 use super::container::Container;
+use super::root::{Component, Part, Sparse};
 use crate::io::error::{Place, ReadProblem};
 use crate::io::fault::Fault;
 
@@ -16,7 +13,7 @@ use crate::io::fault::Fault;
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Layout {
     pub(super) count: usize,
-    component: ComponentType,
+    component: Component,
     is_normalized: bool,
     n_components: usize,
     /// Buffer, first byte and bytes from one element to the next; none where all are zero.
@@ -83,22 +80,16 @@ impl Layout {
             .accessors
             .get(k)
             .ok_or_else(|| broken(k, expected))?;
-        let (Checked::Valid(component), Checked::Valid(kind)) =
-            (accessor.component_type, accessor.type_)
-        else {
-            return Err(broken(k, expected));
-        };
         let mut layout = Self {
-            count: check_count(container, k, accessor.count.0)?,
-            component: component.0,
-            is_normalized: accessor.normalized,
-            n_components: n_components(kind),
+            count: check_count(container, k, accessor.count)?,
+            component: accessor.component,
+            is_normalized: accessor.is_normalized,
+            n_components: accessor.n_components,
             dense: None,
             sparse: BTreeMap::new(),
         };
-        if let Some(view) = accessor.buffer_view {
-            let offset = accessor.byte_offset.map_or(0, |o| o.0);
-            let place = place(container, view, offset, layout.count, layout.size());
+        if let Some(part) = accessor.dense {
+            let place = place(container, part, layout.count, layout.size());
             layout.dense = Some(place.ok_or_else(|| broken(k, "the data of an accessor"))?);
         }
         if let Some(sparse) = &accessor.sparse {
@@ -112,35 +103,17 @@ impl Layout {
     fn sparse_places(
         &self,
         container: &Container,
-        sparse: &gltf::json::accessor::sparse::Sparse,
+        sparse: &Sparse,
     ) -> Option<BTreeMap<usize, (usize, usize)>> {
-        let n = usize::try_from(sparse.count.0)
-            .ok()
-            .filter(|&n| n <= self.count)?;
-        let Checked::Valid(component) = sparse.indices.component_type else {
-            return None;
-        };
-        let size = component_size(component.0);
-        let (indices, values) = (&sparse.indices, &sparse.values);
-        let at = place(
-            container,
-            indices.buffer_view,
-            indices.byte_offset.0,
-            n,
-            size,
-        )?;
-        let to = place(
-            container,
-            values.buffer_view,
-            values.byte_offset.0,
-            n,
-            self.size(),
-        )?;
+        let n = Some(sparse.count).filter(|&n| n <= self.count)?;
+        let size = sparse.index.size();
+        let at = place(container, sparse.indices, n, size)?;
+        let to = place(container, sparse.values, n, self.size())?;
         let mut places = BTreeMap::new();
         for k in 0..n {
             let start = at.1 + k * at.2;
             let raw = container.buffer(at.0)?.get(start..start + size)?;
-            let index = decode(component.0, false, raw) as usize;
+            let index = decode(sparse.index, false, raw) as usize;
             if index >= self.count {
                 return None;
             }
@@ -151,7 +124,7 @@ impl Layout {
 
     /// Bytes of one element.
     fn size(&self) -> usize {
-        self.n_components * component_size(self.component)
+        self.n_components * self.component.size()
     }
 
     pub(super) fn has_components(&self, n: usize) -> bool {
@@ -160,7 +133,16 @@ impl Layout {
 
     /// Whether elements are plain 32-bit floats.
     pub(super) fn is_float(&self) -> bool {
-        self.component == ComponentType::F32
+        self.component == Component::F32
+    }
+
+    /// Whether elements are single whole numbers from 0, as rows of vertices are.
+    pub(super) fn is_rows(&self) -> bool {
+        let is_whole = matches!(
+            self.component,
+            Component::U8 | Component::U16 | Component::U32
+        );
+        is_whole && !self.is_normalized && self.n_components == 1
     }
 
     /// Where element `row` stands: buffer and byte; none where it is an implied zero.
@@ -188,7 +170,7 @@ impl Layout {
         };
         let raw = container.buffer(buffer).unwrap_or_default();
         let raw = &raw[at..at + self.size()];
-        let size = component_size(self.component);
+        let size = self.component.size();
         for (value, raw) in values.iter_mut().zip(raw.chunks_exact(size)) {
             *value = decode(self.component, self.is_normalized, raw);
         }
@@ -200,7 +182,7 @@ impl Layout {
         let Some((buffer, at)) = self.slot(row) else {
             return;
         };
-        let size = component_size(self.component);
+        let size = self.component.size();
         for (k, &value) in values.iter().enumerate() {
             let start = at + k * size;
             encode(
@@ -213,65 +195,52 @@ impl Layout {
 }
 
 /// A count that the data of the whole file could hold, even if this accessor only implies zeros.
-fn check_count(container: &Container, accessor: usize, count: u64) -> Result<usize, Fault> {
+fn check_count(container: &Container, accessor: usize, count: usize) -> Result<usize, Fault> {
     let bytes = container.n_bytes();
-    if count > bytes as u64 {
+    if count > bytes {
         let element = "elements".to_owned();
         return Err(fault(
             accessor,
             ReadProblem::Oversized {
                 element,
-                count,
+                count: count as u64,
                 bytes,
             },
         ));
     }
-    Ok(count as usize)
+    Ok(count)
 }
 
 /// Buffer, first byte and stride of `count` elements of `size` bytes, if all of them are there.
 fn place(
     container: &Container,
-    view: Index<buffer::View>,
-    offset: u64,
+    part: Part,
     count: usize,
     size: usize,
 ) -> Option<(usize, usize, usize)> {
-    let view = container.root.buffer_views.get(view.value())?;
-    let buffer = view.buffer.value();
-    let length = usize::try_from(view.byte_length.0).ok()?;
-    let in_view = usize::try_from(offset).ok()?;
-    let stride = view.byte_stride.map_or(size, |s| s.0);
+    let view = container.root.views.get(part.view)?;
+    let stride = view.stride.unwrap_or(size);
     let used = match count {
         0 => 0,
         _ => (count - 1).checked_mul(stride)?.checked_add(size)?,
     };
-    let start = usize::try_from(view.byte_offset.map_or(0, |o| o.0)).ok()?;
-    let is_inside = in_view.checked_add(used)? <= length
-        && start.checked_add(length)? <= container.buffer(buffer)?.len();
+    let is_inside = part.offset.checked_add(used)? <= view.length
+        && view.offset.checked_add(view.length)? <= container.buffer(view.buffer)?.len();
     // Elements that overlap each other could not be written.
-    (is_inside && stride >= size).then_some((buffer, start + in_view, stride))
+    (is_inside && stride >= size).then_some((view.buffer, view.offset + part.offset, stride))
 }
 
-fn n_components(kind: Type) -> usize {
-    kind.multiplicity()
-}
-
-fn component_size(component: ComponentType) -> usize {
-    component.size()
-}
-
-fn decode(component: ComponentType, is_normalized: bool, raw: &[u8]) -> f64 {
+fn decode(component: Component, is_normalized: bool, raw: &[u8]) -> f64 {
     let mut bytes = [0; 4];
     bytes[..raw.len()].copy_from_slice(raw);
     let bits = u32::from_le_bytes(bytes);
     let (value, unit) = match component {
-        ComponentType::I8 => (f64::from(bits as u8 as i8), 127.0),
-        ComponentType::U8 => (f64::from(bits as u8), 255.0),
-        ComponentType::I16 => (f64::from(bits as u16 as i16), 32767.0),
-        ComponentType::U16 => (f64::from(bits as u16), 65535.0),
-        ComponentType::U32 => return f64::from(bits),
-        ComponentType::F32 => return f64::from(f32::from_bits(bits)),
+        Component::I8 => (f64::from(bits as u8 as i8), 127.0),
+        Component::U8 => (f64::from(bits as u8), 255.0),
+        Component::I16 => (f64::from(bits as u16 as i16), 32767.0),
+        Component::U16 => (f64::from(bits as u16), 65535.0),
+        Component::U32 => return f64::from(bits),
+        Component::F32 => return f64::from(f32::from_bits(bits)),
     };
     if is_normalized {
         (value / unit).max(-1.0)
@@ -281,14 +250,14 @@ fn decode(component: ComponentType, is_normalized: bool, raw: &[u8]) -> f64 {
 }
 
 /// A float, or a fraction of the largest whole number (as normals are quantised).
-fn encode(component: ComponentType, value: f64, out: &mut [u8]) {
+fn encode(component: Component, value: f64, out: &mut [u8]) {
     let bits = match component {
-        ComponentType::I8 => (value * 127.0).round() as i8 as u8 as u32,
-        ComponentType::U8 => (value * 255.0).round() as u8 as u32,
-        ComponentType::I16 => (value * 32767.0).round() as i16 as u16 as u32,
-        ComponentType::U16 => (value * 65535.0).round() as u16 as u32,
-        ComponentType::U32 => value as u32,
-        ComponentType::F32 => (value as f32).to_bits(),
+        Component::I8 => (value * 127.0).round() as i8 as u8 as u32,
+        Component::U8 => (value * 255.0).round() as u8 as u32,
+        Component::I16 => (value * 32767.0).round() as i16 as u16 as u32,
+        Component::U16 => (value * 65535.0).round() as u16 as u32,
+        Component::U32 => value as u32,
+        Component::F32 => (value as f32).to_bits(),
     };
     let n = out.len();
     out.copy_from_slice(&bits.to_le_bytes()[..n]);

@@ -6,11 +6,14 @@ use std::path::{Component, Path, PathBuf};
 
 use base64::engine::general_purpose::STANDARD;
 use base64::Engine;
-use gltf::json::Root;
 
+use super::extensions::check_extensions;
 use super::json_spans::{edited, items, member, root, Edit};
+use super::root::Root;
 use crate::io::error::ReadProblem;
 use crate::io::fault::{excerpt, Fault};
+use crate::io::printable::printable;
+use crate::io::text::Cursor;
 
 const MAGIC: &[u8] = b"glTF";
 const HEADER: usize = 12;
@@ -46,10 +49,9 @@ impl Container {
         let (json, chunk) = if is_glb(&bytes) {
             chunks(&bytes)?
         } else {
-            (0..bytes.len(), None)
+            (Cursor::new(&bytes).at()..bytes.len(), None)
         };
-        let root = Root::from_slice(&bytes[json.clone()])
-            .map_err(|e| Fault::whole(ReadProblem::Json(e.to_string())))?;
+        let root = Root::read(&bytes[json.clone()])?;
         check_extensions(&root)?;
         Ok(Self {
             path: path.to_owned(),
@@ -115,7 +117,7 @@ impl Container {
         if is_glb(&self.bytes) {
             self.glb(json, buffers.first().and_then(Option::as_deref))
         } else {
-            json
+            [&self.bytes[..self.json.start], &json].concat()
         }
     }
 
@@ -159,7 +161,7 @@ fn chunks(bytes: &[u8]) -> Result<Chunks, Fault> {
     };
     let version = u32_at(bytes, 4);
     if version != 2 {
-        return Err(unsupported(
+        return Err(Fault::unsupported(
             format!("GLB version {version}"),
             "save it as glTF 2.0",
         ));
@@ -179,39 +181,21 @@ fn chunks(bytes: &[u8]) -> Result<Chunks, Fault> {
     Ok((json, binary))
 }
 
-pub(super) fn unsupported(feature: String, advice: &'static str) -> Fault {
-    Fault::whole(ReadProblem::Unsupported { feature, advice })
-}
-
-/// Compressed data would not be seen, or would be left behind when the mesh moves.
-fn check_extensions(root: &Root) -> Result<(), Fault> {
-    const COMPRESSED: [&str; 3] = [
-        "KHR_draco_mesh_compression",
-        "EXT_meshopt_compression",
-        "KHR_meshopt_compression",
-    ];
-    let mut named = root.extensions_required.iter().chain(&root.extensions_used);
-    match named.find(|name| COMPRESSED.contains(&name.as_str())) {
-        None => Ok(()),
-        Some(name) => Err(unsupported(
-            format!("a glTF compressed with {name}"),
-            "save it without mesh compression",
-        )),
-    }
-}
-
 /// The buffers that the document names; the first may be the binary chunk of the file.
 fn buffers(root: &Root, chunk: Option<Range<usize>>, path: &Path) -> Result<Vec<Buffer>, Fault> {
     let mut files = HashSet::new();
-    let mut buffers = Vec::with_capacity(root.buffers.len());
-    for buffer in &root.buffers {
+    let mut buffers = Vec::with_capacity(root.buffer_uris.len());
+    for uri in &root.buffer_uris {
         // One large file, named often enough, would fill any memory.
-        let file = buffer.uri.as_deref().and_then(file_named);
+        let file = uri.as_deref().and_then(file_named);
         if let Some(file) = file.filter(|file| !files.insert(file.clone())) {
-            let feature = format!("two buffers of the one file `{}`", file.display());
-            return Err(unsupported(feature, "save the file as GLB"));
+            let feature = format!(
+                "two buffers of the one file `{}`",
+                printable(&file.to_string_lossy())
+            );
+            return Err(Fault::unsupported(feature, "save the file as GLB"));
         }
-        buffers.push(match &buffer.uri {
+        buffers.push(match uri {
             Some(uri) => Buffer::Loaded(load(uri, path)?),
             None if buffers.is_empty() => Buffer::Chunk(chunk.clone().unwrap_or_default()),
             None => Buffer::Chunk(0..0),
@@ -227,11 +211,11 @@ fn load(uri: &str, path: &Path) -> Result<Vec<u8>, Fault> {
         let text = data.split_once(";base64,").map(|(_, text)| text);
         return text
             .and_then(|text| STANDARD.decode(text).ok())
-            .ok_or_else(|| unsupported(shown(), advice));
+            .ok_or_else(|| Fault::unsupported(shown(), advice));
     }
     let file = file_named(uri).map(|name| path.with_file_name(name));
     let Some(file) = file.filter(|file| file.is_file()) else {
-        return Err(unsupported(
+        return Err(Fault::unsupported(
             shown(),
             "put it in the same folder, or save the file as GLB",
         ));

@@ -6,6 +6,7 @@ use super::container::Container;
 use super::scene::{Block, Scene};
 use crate::io::contents::Contents;
 use crate::io::fault::Fault;
+use crate::io::finding::Finding;
 use crate::PolygonSoup;
 
 /// What a rewrite needs to know of a file.
@@ -20,6 +21,7 @@ pub(super) struct Shown {
     pub(super) file: GltfFile,
     pub(super) soup: PolygonSoup,
     pub(super) contents: Contents,
+    pub(super) findings: Vec<Finding>,
 }
 
 impl GltfFile {
@@ -35,6 +37,7 @@ impl GltfFile {
             },
             soup: scene.soup,
             contents: scene.contents,
+            findings: scene.findings,
         })
     }
 }

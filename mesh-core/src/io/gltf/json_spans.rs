@@ -30,6 +30,20 @@ pub(super) fn items(json: &[u8], array: Range<usize>) -> Vec<Range<usize>> {
     spans
 }
 
+/// The keys, with their quotes, and values of the object that `object` spans.
+pub(super) fn members(json: &[u8], object: Range<usize>) -> Vec<(Range<usize>, Range<usize>)> {
+    let mut members = Vec::new();
+    let mut at = skip_blanks(json, object.start + 1);
+    while at + 1 < object.end {
+        let key_end = value_end(json, at);
+        let value = skip_blanks(json, skip_blanks(json, key_end) + 1);
+        let end = value_end(json, value);
+        members.push((at..key_end, value..end));
+        at = skip_blanks(json, skip_blanks(json, end) + 1);
+    }
+    members
+}
+
 /// The value under `key` of the object that `object` spans.
 pub(super) fn member(json: &[u8], object: Range<usize>, key: &str) -> Option<Range<usize>> {
     let mut at = skip_blanks(json, object.start + 1);
@@ -37,12 +51,27 @@ pub(super) fn member(json: &[u8], object: Range<usize>, key: &str) -> Option<Ran
         let key_end = value_end(json, at);
         let value = skip_blanks(json, skip_blanks(json, key_end) + 1);
         let end = value_end(json, value);
-        if json.get(at + 1..key_end - 1) == Some(key.as_bytes()) {
+        if is_key(&json[at..key_end], key) {
             return Some(value..end);
         }
         at = skip_blanks(json, skip_blanks(json, end) + 1);
     }
     None
+}
+
+/// Whether a key, with its quotes, says `key`.
+fn is_key(json: &[u8], key: &str) -> bool {
+    if json.contains(&b'\\') {
+        return std::str::from_utf8(json).is_ok_and(|json| text(json) == key);
+    }
+    json.strip_prefix(b"\"")
+        .and_then(|rest| rest.strip_suffix(b"\""))
+        == Some(key.as_bytes())
+}
+
+/// What a JSON text says; as it stands where it is no text.
+pub(super) fn text(json: &str) -> String {
+    serde_json::from_str(json).unwrap_or_else(|_| json.trim_matches('"').to_owned())
 }
 
 /// The key and value under `key` of the object that `object` spans, with one of the commas beside them.
@@ -152,7 +181,7 @@ mod tests {
             ("[ ]".to_owned(), 0)
         );
         assert_eq!(member(json, all.clone(), "b"), None);
-        let a = member(json, all, r#"a,\"]"#).unwrap();
+        let a = member(json, all, "a,\"]").unwrap();
         let values: Vec<String> = items(json, a).into_iter().map(text).collect();
         assert_eq!(values, ["1", r#"{"b": "}"}"#, "[2,3 ]", r#""x""#]);
     }

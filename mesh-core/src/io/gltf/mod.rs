@@ -4,19 +4,22 @@
 mod accessor;
 mod bounds;
 mod container;
+mod extensions;
 mod file;
+mod frame;
 mod gradient;
+mod json;
 mod json_spans;
 mod morphs;
+mod nodes;
 mod prune;
 mod rewrite;
+mod root;
 mod scene;
 mod unmovable;
 mod write;
 
 use std::path::Path;
-
-use nalgebra::Matrix3;
 
 use self::file::{GltfFile, Shown};
 use super::contents::Morphs;
@@ -33,6 +36,7 @@ pub(super) const GLTF: Codec = Codec {
     geometry: Geometry::Triangles,
     has_uvs: true,
     has_mark: is_document,
+    is_always_marked: true,
     has_statement: |_| false,
     read,
     write: write::write_gltf,
@@ -56,10 +60,12 @@ fn read(bytes: Vec<u8>, path: &Path) -> Result<Parsed, Fault> {
         file,
         soup,
         contents,
+        findings,
     } = GltfFile::read(bytes, path)?;
     Ok(Parsed {
         soup,
         contents,
+        findings,
         document: Box::new(file),
     })
 }
@@ -73,14 +79,15 @@ impl Document for GltfFile {
             let Some(normals) = &block.normals else {
                 continue;
             };
-            let turn = block.to_scene.map_or_else(
-                || Some(Matrix3::identity()),
-                |m| Some(m.fixed_view::<3, 3>(0, 0).try_inverse()?.transpose()),
-            );
-            let turn = turn.unwrap_or_else(Matrix3::zeros);
             for row in block.rows.clone() {
-                let n = normals.get::<3>(&self.container, row - block.rows.start);
-                out[row] = turn * Vector3::from(n);
+                let in_block = row - block.rows.start;
+                let n = Vector3::from(normals.get::<3>(&self.container, in_block));
+                out[row] = match block.frame.linear(in_block) {
+                    None => n,
+                    Some(linear) => linear
+                        .try_inverse()
+                        .map_or_else(Vector3::zeros, |back| back.transpose() * n),
+                };
                 any = true;
             }
         }

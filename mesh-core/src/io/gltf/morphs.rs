@@ -137,12 +137,9 @@ fn carried(
     if displacement == Vector3::zeros() {
         return None;
     }
-    let map = match block.to_scene {
+    let map = match block.frame.linear(row) {
         None => map,
-        Some(m) => {
-            let linear = m.fixed_view::<3, 3>(0, 0).into_owned();
-            linear.try_inverse()? * map * linear
-        }
+        Some(linear) => linear.try_inverse()? * map * linear,
     };
     let difference = |base: Vector3, map: Matrix3<f64>| {
         let to_unit = |v: Vector3| unit(map * v);

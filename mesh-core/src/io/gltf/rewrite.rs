@@ -4,11 +4,11 @@ use std::collections::HashMap;
 use std::path::Path;
 use std::sync::Arc;
 
-use nalgebra::{Matrix3, Matrix4};
+use nalgebra::Matrix3;
 
 use super::accessor::Layout;
 use super::bounds::{bounds_edits, Bounds};
-use super::container::{unsupported, Container};
+use super::container::Container;
 use super::file::GltfFile;
 use super::morphs;
 use super::prune::without_morphs;
@@ -57,7 +57,7 @@ pub(super) fn rewrite(
 fn check_faces(written: Vec<u8>, path: &Path, rest: &PolygonSoup) -> Result<Vec<u8>, Fault> {
     match GltfFile::read(written, path) {
         Ok(again) if again.soup.faces == rest.faces => Ok(again.file.container.into_bytes()),
-        _ => Err(unsupported(
+        _ => Err(Fault::unsupported(
             "a mesh whose positions share bytes with other data".to_owned(),
             "export it again",
         )),
@@ -89,11 +89,15 @@ impl<'a> Shapes<'a> {
             has_moved: has_moved.collect(),
         };
         for block in &file.blocks {
-            let back = block.to_scene.and_then(|m: Matrix4<f64>| m.try_inverse());
             for row in block.rows.clone() {
                 let in_block = row - block.rows.start;
                 let local = Point3::from(block.positions.get::<3>(&file.container, in_block));
                 shapes.local.push(local);
+                let frame = block
+                    .frame
+                    .matrix(in_block)
+                    .filter(|_| shapes.has_moved[row]);
+                let back = frame.and_then(|matrix| matrix.try_inverse());
                 shapes.moved.push(match back {
                     _ if !shapes.has_moved[row] => local,
                     None => moved[row],

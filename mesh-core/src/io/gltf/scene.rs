@@ -4,16 +4,18 @@ use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::ops::Range;
 use std::sync::Arc;
 
-use gltf::json::mesh::{Mesh, Mode, Primitive, Semantic};
-use gltf::json::scene::Node;
-use gltf::json::validation::Checked;
-use nalgebra::{Matrix4, Quaternion, UnitQuaternion};
+use nalgebra::Matrix4;
 
 use super::accessor::{Layout, Layouts};
-use super::container::{unsupported, Container};
+use super::container::Container;
+use super::extensions;
+use super::frame::Frame;
+use super::nodes::{scene_transforms, shown_meshes, ShownMesh};
+use super::root::{Mesh, Primitive};
 use crate::io::contents::{Contents, NamedFaces};
 use crate::io::error::{Place, ReadProblem};
-use crate::io::fault::Fault;
+use crate::io::fault::{checked_coordinate, Fault};
+use crate::io::finding::Finding;
 use crate::{Point3, PolygonSoup, Vector3};
 
 /// What a morph target displaces.
@@ -26,14 +28,15 @@ pub(super) enum Displaced {
 
 /// The accessors in which the morph targets of a primitive keep displacements.
 fn displacements(primitive: &Primitive) -> impl Iterator<Item = (Displaced, usize)> + '_ {
-    primitive.targets.iter().flatten().flat_map(|target| {
-        [
-            (Displaced::Position, target.positions),
-            (Displaced::Normal, target.normals),
-            (Displaced::Tangent, target.tangents),
-        ]
-        .into_iter()
-        .filter_map(|(displaced, accessor)| Some((displaced, accessor?.value())))
+    const NAMES: [(Displaced, &str); 3] = [
+        (Displaced::Position, "POSITION"),
+        (Displaced::Normal, "NORMAL"),
+        (Displaced::Tangent, "TANGENT"),
+    ];
+    primitive.targets.iter().flat_map(|target| {
+        NAMES
+            .iter()
+            .filter_map(|(displaced, name)| Some((*displaced, *target.get(*name)?)))
     })
 }
 
@@ -50,17 +53,21 @@ pub(super) struct Block {
     pub(super) displacements: BTreeSet<(Displaced, usize)>,
     /// Whether primitives read these positions with other normals or tangents: only one set of them is seen.
     pub(super) has_others: bool,
-    /// From the mesh's own frame into the scene; none where they are the same.
-    pub(super) to_scene: Option<Matrix4<f64>>,
+    /// From the mesh's own frame into the scene.
+    pub(super) frame: Frame,
     /// The vertices, as rows of the soup.
     pub(super) rows: Range<usize>,
 }
 
+/// Positions in a node, by the rows of their layout and those of their joints and weights.
+type BlockKey = (Option<usize>, usize, Vec<usize>);
+
 /// What was found before: layouts, and the block of each node and layout of positions.
 #[derive(Default)]
 struct Known {
+    transforms: Vec<Option<Matrix4<f64>>>,
     layouts: Layouts,
-    blocks: HashMap<(Option<usize>, usize), usize>,
+    blocks: HashMap<BlockKey, usize>,
 }
 
 /// All blocks and what they look like together.
@@ -69,102 +76,130 @@ pub(super) struct Scene {
     pub(super) blocks: Vec<Block>,
     pub(super) soup: PolygonSoup,
     pub(super) contents: Contents,
+    pub(super) findings: Vec<Finding>,
 }
 
 impl Scene {
     pub(super) fn read(container: &Container) -> Result<Self, Fault> {
+        let root = &container.root;
         let mut scene = Self::default();
-        let mut known = Known::default();
+        let mut known = Known {
+            transforms: scene_transforms(root),
+            ..Known::default()
+        };
         let mut names = Names::default();
-        for (node, mesh, to_scene) in shown_meshes(container) {
-            let first_face = scene.soup.faces.len();
-            let Some(shown) = container.root.meshes.get(mesh) else {
-                return Err(missing("mesh", mesh));
-            };
-            for primitive in &shown.primitives {
-                let first = scene.soup.faces.len();
-                scene.add_primitive(container, primitive, (node, to_scene), &mut known)?;
-                let material = primitive.material.and_then(|m| {
-                    let name = container.root.materials.get(m.value())?.name.clone();
-                    Some((
-                        m.value(),
-                        name.unwrap_or_else(|| format!("material {}", m.value())),
-                    ))
-                });
-                if let Some((row, name)) = material {
-                    names
-                        .materials
-                        .entry(row)
-                        .or_insert((name, Vec::new()))
-                        .1
-                        .push(first..scene.soup.faces.len());
-                }
-            }
-            scene.contents.n_morph_targets += n_targets(shown);
-            let name = shown.name.clone().unwrap_or_else(|| format!("mesh {mesh}"));
-            let faces = first_face..scene.soup.faces.len();
-            names
-                .meshes
-                .entry(mesh)
-                .or_insert((name, Vec::new()))
-                .1
-                .push(faces);
+        for shown in shown_meshes(root, &known.transforms) {
+            scene.add_mesh(container, shown, &mut known, &mut names)?;
         }
-        let images = container.root.images.iter().filter_map(|i| i.uri.clone());
-        scene.contents.references = images.filter(|uri| !uri.starts_with("data:")).collect();
-        scene.contents.n_skins = container.root.skins.len();
-        scene.contents.n_animations = container.root.animations.len();
+        let images = root.image_uris.iter();
+        let references = images.filter(|uri| !uri.starts_with("data:"));
+        scene.contents.references = references.cloned().collect();
+        scene.contents.n_skins = root.skins.len();
+        scene.contents.n_animations = root.n_animations;
         scene.contents.objects = Names::list(names.meshes);
         scene.contents.materials = Names::list(names.materials);
+        let ignored = extensions::ignored(root).map(str::to_owned);
+        let ignored = ignored.map(|name| Finding::ExtensionPassedOver { name });
+        scene.findings.extend(ignored);
         Ok(scene)
+    }
+
+    fn add_mesh(
+        &mut self,
+        container: &Container,
+        shown: ShownMesh,
+        known: &mut Known,
+        names: &mut Names,
+    ) -> Result<(), Fault> {
+        let root = &container.root;
+        let first_face = self.soup.faces.len();
+        let Some(mesh) = root.meshes.get(shown.mesh) else {
+            return Err(missing("mesh", shown.mesh));
+        };
+        for primitive in &mesh.primitives {
+            let first = self.soup.faces.len();
+            self.add_primitive(container, primitive, shown, known)?;
+            let material = primitive.material;
+            if let Some((row, name)) = material.and_then(|m| Some((m, root.materials.get(m)?))) {
+                let name = || (or_row(name.as_ref(), "material", row), Vec::new());
+                let faces = first..self.soup.faces.len();
+                names
+                    .materials
+                    .entry(row)
+                    .or_insert_with(name)
+                    .1
+                    .push(faces);
+            }
+        }
+        let targets = mesh.primitives.iter().map(|p| p.targets.len());
+        self.contents.n_morph_targets += targets.max().unwrap_or(0);
+        let name = or_row(mesh.name.as_ref(), "mesh", shown.mesh);
+        self.note_unfollowed(container, mesh, shown, &name);
+        let faces = first_face..self.soup.faces.len();
+        let named = names.meshes.entry(shown.mesh);
+        named.or_insert((name, Vec::new())).1.push(faces);
+        Ok(())
+    }
+
+    /// Morph targets in effect at rest are not applied.
+    fn note_unfollowed(
+        &mut self,
+        container: &Container,
+        mesh: &Mesh,
+        shown: ShownMesh,
+        name: &str,
+    ) {
+        let node = shown.node.and_then(|node| container.root.nodes.get(node));
+        let of_node = node.and_then(|node| node.has_weights);
+        let has_targets = mesh.primitives.iter().any(|p| !p.targets.is_empty());
+        if has_targets && of_node.unwrap_or(mesh.has_weights) {
+            let mesh = name.to_owned();
+            self.findings.push(Finding::MorphsNotApplied { mesh });
+        }
     }
 
     fn add_primitive(
         &mut self,
         container: &Container,
         primitive: &Primitive,
-        (node, to_scene): (Option<usize>, Option<Matrix4<f64>>),
+        shown: ShownMesh,
         known: &mut Known,
     ) -> Result<(), Fault> {
-        let attribute = |semantic| {
-            primitive
-                .attributes
-                .get(&Checked::Valid(semantic))
-                .map(|i| i.value())
-        };
-        let Some(accessor) = attribute(Semantic::Positions) else {
+        let attribute = |name| primitive.attributes.get(name).copied();
+        let Some(accessor) = attribute("POSITION") else {
             return Ok(());
         };
         let (positions, layout) = known.layouts.of(container, accessor)?;
-        let found = known.blocks.get(&(node, layout)).copied();
+        let key = (
+            shown.node,
+            layout,
+            influences(container, primitive, &mut known.layouts)?,
+        );
+        let found = known.blocks.get(&key).copied();
         let block = match found {
             Some(block) => block,
-            None => self.add_block(container, positions, to_scene)?,
+            None => {
+                let frame = self.frame(container, primitive, shown, known)?;
+                self.add_block(container, positions, frame)?
+            }
         };
-        known.blocks.insert((node, layout), block);
+        known.blocks.insert(key, block);
         let n_rows = self.blocks[block].rows.len();
-        let mut vector = |semantic, n| -> Result<Option<Arc<Layout>>, Fault> {
-            let layout = attribute(semantic).map(|a| known.layouts.of(container, a));
+        let mut vector = |name, n| -> Result<Option<Arc<Layout>>, Fault> {
+            let layout = attribute(name).map(|a| known.layouts.of(container, a));
             let layout = layout.transpose()?.map(|(layout, _)| layout);
             Ok(layout.filter(|l| l.has_components(n) && l.count == n_rows))
         };
-        let (normals, tangents) = (
-            vector(Semantic::Normals, 3)?,
-            vector(Semantic::Tangents, 4)?,
-        );
-        let uvs = vector(Semantic::TexCoords(0), 2)?;
-        let (has_uvs, has_colors) = (
-            attribute(Semantic::TexCoords(0)),
-            attribute(Semantic::Colors(0)),
-        );
+        let (normals, tangents) = (vector("NORMAL", 3)?, vector("TANGENT", 4)?);
+        let uvs = vector("TEXCOORD_0", 2)?;
 
         let block = &mut self.blocks[block];
         let rows = block.rows.clone();
         block.accessors.insert(accessor);
         if found.is_none() {
             let count = |is_there: bool| if is_there { rows.len() } else { 0 };
-            self.contents.n_uvs += count(has_uvs.is_some());
-            self.contents.n_colors += count(has_colors.is_some());
+            self.contents.n_uvs += count(attribute("TEXCOORD_0").is_some());
+            self.contents.n_colors += count(attribute("COLOR_0").is_some());
             self.contents.n_normals += count(normals.is_some());
         }
         let differs = |own: &Option<Arc<Layout>>, new: &Option<Arc<Layout>>| {
@@ -179,14 +214,38 @@ impl Scene {
         self.add_faces(container, primitive, rows)
     }
 
+    /// Where a primitive is shown: by its skin where it has one that can be followed, or else by its node.
+    fn frame(
+        &mut self,
+        container: &Container,
+        primitive: &Primitive,
+        shown: ShownMesh,
+        known: &mut Known,
+    ) -> Result<Frame, Fault> {
+        let root = &container.root;
+        let node = shown.node.and_then(|node| root.nodes.get(node));
+        if let Some(skin) = node.and_then(|node| node.skin) {
+            let skin = root.skins.get(skin).ok_or_else(|| missing("skin", skin))?;
+            let (layouts, transforms) = (&mut known.layouts, &known.transforms);
+            let frame = Frame::of_skin(skin, primitive, container, layouts, transforms)?;
+            if let Some(frame) = frame {
+                return Ok(frame);
+            }
+            let mesh = root.meshes.get(shown.mesh).and_then(|m| m.name.as_ref());
+            let mesh = or_row(mesh, "mesh", shown.mesh);
+            self.findings.push(Finding::SkinNotApplied { mesh });
+        }
+        Ok(shown.to_scene.map_or(Frame::Scene, Frame::Node))
+    }
+
     fn add_block(
         &mut self,
         container: &Container,
         positions: Arc<Layout>,
-        to_scene: Option<Matrix4<f64>>,
+        frame: Frame,
     ) -> Result<usize, Fault> {
         if !positions.has_components(3) {
-            return Err(unsupported(
+            return Err(Fault::unsupported(
                 "a POSITION of other than three components".to_owned(),
                 "export it again",
             ));
@@ -195,9 +254,18 @@ impl Scene {
         let first = self.soup.positions.len();
         for row in 0..positions.count {
             let local = Point3::from(positions.get::<3>(container, row));
-            let p = to_scene.map_or(local, |m| m.transform_point(&local));
-            if !p.iter().all(|c| c.is_finite()) {
-                return Err(not_finite("vertex", first + row, p.coords));
+            let p = frame
+                .matrix(row)
+                .map_or(local, |m| m.transform_point(&local));
+            for &c in &p.coords {
+                let text = || format!("{:?} {:?} {:?}", p.x, p.y, p.z);
+                checked_coordinate(c, text).map_err(|problem| Fault {
+                    place: Place::Row {
+                        element: "vertex".to_owned(),
+                        row: first + row,
+                    },
+                    problem,
+                })?;
             }
             self.soup.positions.push(p);
         }
@@ -209,7 +277,7 @@ impl Scene {
             uvs: None,
             displacements: BTreeSet::new(),
             has_others: false,
-            to_scene,
+            frame,
             rows: first..self.soup.positions.len(),
         });
         Ok(self.blocks.len() - 1)
@@ -222,7 +290,10 @@ impl Scene {
             return Ok(());
         }
         let feature = "a scene that shows the same meshes so many times".to_owned();
-        Err(unsupported(feature, "save only the mesh that is meant"))
+        Err(Fault::unsupported(
+            feature,
+            "save only the mesh that is meant",
+        ))
     }
 
     fn add_faces(
@@ -231,24 +302,16 @@ impl Scene {
         primitive: &Primitive,
         rows: Range<usize>,
     ) -> Result<(), Fault> {
-        let mode = match primitive.mode {
-            Checked::Valid(mode) => mode,
-            Checked::Invalid => {
-                return Err(unsupported(
-                    "a primitive of unknown mode".to_owned(),
-                    "export it again",
-                ))
-            }
-        };
-        if matches!(
-            mode,
-            Mode::Points | Mode::Lines | Mode::LineLoop | Mode::LineStrip
-        ) {
+        let mode = Mode::of(primitive.mode).ok_or_else(|| {
+            let feature = format!("a primitive of mode {}", primitive.mode);
+            Fault::unsupported(feature, "export it as triangles")
+        })?;
+        if mode == Mode::PointsOrLines {
             self.contents.n_lines_and_points += 1;
             return Ok(());
         }
         let corners = match primitive.indices {
-            Some(accessor) => indices(container, accessor.value(), &rows)?,
+            Some(accessor) => indices(container, accessor, &rows)?,
             None => (rows.start as u32..rows.end as u32).collect(),
         };
         self.check_size(container, corners.len())?;
@@ -269,16 +332,10 @@ impl Scene {
                         .map(|side| vec![corners[0], side[0], side[1]]),
                 );
             }
-            Mode::Points | Mode::Lines | Mode::LineLoop | Mode::LineStrip => {}
+            Mode::PointsOrLines => {}
         }
         Ok(())
     }
-}
-
-/// How many morph targets a mesh has: all its primitives have as many.
-fn n_targets(mesh: &Mesh) -> usize {
-    let targets = mesh.primitives.iter().filter_map(|p| p.targets.as_ref());
-    targets.map(Vec::len).max().unwrap_or(0)
 }
 
 /// Names by row in the document, with their faces.
@@ -310,6 +367,66 @@ pub(super) fn not_finite(element: &str, row: usize, vector: Vector3) -> Fault {
     }
 }
 
+/// What the corners of a primitive make.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Mode {
+    PointsOrLines,
+    Triangles,
+    TriangleStrip,
+    TriangleFan,
+}
+
+impl Mode {
+    fn of(code: usize) -> Option<Self> {
+        Some(match code {
+            0..=3 => Self::PointsOrLines,
+            4 => Self::Triangles,
+            5 => Self::TriangleStrip,
+            6 => Self::TriangleFan,
+            _ => return None,
+        })
+    }
+}
+
+/// The name, or `element` and the row where there is none.
+fn or_row(name: Option<&String>, element: &str, row: usize) -> String {
+    name.cloned().unwrap_or_else(|| format!("{element} {row}"))
+}
+
+/// The layouts of a primitive's joints and weights.
+fn influences(
+    container: &Container,
+    primitive: &Primitive,
+    layouts: &mut Layouts,
+) -> Result<Vec<usize>, Fault> {
+    let mut rows = Vec::new();
+    for set in 0.. {
+        let before = rows.len();
+        for name in ["JOINTS", "WEIGHTS"] {
+            if let Some(&accessor) = primitive.attributes.get(&format!("{name}_{set}")) {
+                rows.push(layouts.of(container, accessor)?.1);
+            }
+        }
+        if rows.len() == before {
+            break;
+        }
+    }
+    Ok(rows)
+}
+
+fn not_rows(accessor: usize) -> Fault {
+    Fault {
+        place: Place::Row {
+            element: "accessor".to_owned(),
+            row: accessor,
+        },
+        problem: ReadProblem::Unsupported {
+            feature: "a list of corners that are no whole numbers".to_owned(),
+            advice: "export it with whole-number indices",
+        },
+    }
+}
+
 fn missing(element: &str, row: usize) -> Fault {
     let expected = "an element that another names";
     Fault {
@@ -323,6 +440,9 @@ fn missing(element: &str, row: usize) -> Fault {
 
 fn indices(container: &Container, accessor: usize, rows: &Range<usize>) -> Result<Vec<u32>, Fault> {
     let layout = Layout::of(container, accessor)?;
+    if !layout.is_rows() {
+        return Err(not_rows(accessor));
+    }
     let mut corners = Vec::with_capacity(layout.count);
     for k in 0..layout.count {
         let [index] = layout.get(container, k);
@@ -342,76 +462,4 @@ fn indices(container: &Container, accessor: usize, rows: &Range<usize>) -> Resul
         corners.push((rows.start + index as usize) as u32);
     }
     Ok(corners)
-}
-
-type ShownMesh = (Option<usize>, usize, Option<Matrix4<f64>>);
-
-/// Node, mesh and transform of every mesh that the scene shows, in the order of the nodes; every mesh of a file that
-/// shows none. A skinned mesh ignores its node's transform, as the format says.
-fn shown_meshes(container: &Container) -> Vec<ShownMesh> {
-    let nodes = &container.root.nodes;
-    let transforms = scene_transforms(container);
-    let shown: Vec<ShownMesh> = (0..nodes.len())
-        .filter_map(|k| {
-            let (mesh, transform) = (nodes[k].mesh?, transforms[k]?);
-            let is_fixed = nodes[k].skin.is_some() || transform == Matrix4::identity();
-            Some((Some(k), mesh.value(), (!is_fixed).then_some(transform)))
-        })
-        .collect();
-    if shown.is_empty() {
-        return (0..container.root.meshes.len())
-            .map(|mesh| (None, mesh, None))
-            .collect();
-    }
-    shown
-}
-
-/// From each node's frame into the scene; none for nodes that the scene does not hold.
-fn scene_transforms(container: &Container) -> Vec<Option<Matrix4<f64>>> {
-    let root = &container.root;
-    let scene = root.scene.map_or(0, |s| s.value());
-    let tops: Vec<usize> = match root.scenes.get(scene) {
-        Some(scene) => scene.nodes.iter().map(|n| n.value()).collect(),
-        None => tops(&root.nodes),
-    };
-    let mut transforms = vec![None; root.nodes.len()];
-    let mut open: Vec<(usize, Matrix4<f64>)> =
-        tops.into_iter().map(|k| (k, Matrix4::identity())).collect();
-    while let Some((k, above)) = open.pop() {
-        let Some(node) = root.nodes.get(k).filter(|_| transforms[k].is_none()) else {
-            continue;
-        };
-        let transform = above * local_transform(node);
-        transforms[k] = Some(transform);
-        let children = node.children.iter().flatten();
-        open.extend(children.map(|child| (child.value(), transform)));
-    }
-    transforms
-}
-
-/// The nodes that are no other's child.
-fn tops(nodes: &[Node]) -> Vec<usize> {
-    let mut is_child = vec![false; nodes.len()];
-    for child in nodes.iter().flat_map(|n| n.children.iter().flatten()) {
-        if let Some(is_child) = is_child.get_mut(child.value()) {
-            *is_child = true;
-        }
-    }
-    (0..nodes.len()).filter(|&k| !is_child[k]).collect()
-}
-
-fn local_transform(node: &Node) -> Matrix4<f64> {
-    if let Some(matrix) = node.matrix {
-        return Matrix4::from_column_slice(&matrix.map(f64::from));
-    }
-    let translation = Vector3::from(node.translation.unwrap_or_default().map(f64::from));
-    let scale = Vector3::from(node.scale.unwrap_or([1.0; 3]).map(f64::from));
-    let turn = match node.rotation {
-        None => Matrix4::identity(),
-        Some(rotation) => {
-            let [x, y, z, w] = rotation.0.map(f64::from);
-            UnitQuaternion::from_quaternion(Quaternion::new(w, x, y, z)).to_homogeneous()
-        }
-    };
-    Matrix4::new_translation(&translation) * turn * Matrix4::new_nonuniform_scaling(&scale)
 }

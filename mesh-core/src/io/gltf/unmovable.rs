@@ -33,9 +33,9 @@ fn unmovable(block: &Block, taken: &mut HashSet<(usize, usize)>) -> Option<Unmov
             "export it with positions of its own for each part",
         );
     }
-    if block.to_scene.is_some_and(|m| !m.is_invertible()) {
+    if !block.frame.is_invertible() {
         return because(
-            "a node flattened to nothing",
+            "a node or joint flattened to nothing",
             "apply its transform to the mesh",
         );
     }

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::header::{Element, Encoding, Header, Kind, Scalar};
 use crate::io::error::{Place, ReadProblem};
-use crate::io::fault::{excerpt, Fault};
+use crate::io::fault::{checked_coordinate, excerpt, Fault};
 use crate::io::text::{number, push_text, Cursor, Splice};
 
 /// A number of the body and the bytes it takes.
@@ -18,6 +18,8 @@ pub(super) struct Body<'a> {
     bytes: &'a [u8],
     at: usize,
     encoding: Encoding,
+    /// Whether each row of a text has lines of its own.
+    has_lines: bool,
     /// What is being read, for faults.
     element: &'a str,
     row: usize,
@@ -29,6 +31,7 @@ impl<'a> Body<'a> {
             bytes,
             at: header.body,
             encoding: header.encoding,
+            has_lines: header.has_lines,
             element: "",
             row: 0,
         }
@@ -66,8 +69,18 @@ impl<'a> Body<'a> {
         for row in 0..n_rows {
             self.row = row;
             visit(self, row)?;
+            if self.has_lines {
+                self.skip_rest_of_line();
+            }
         }
         Ok(())
+    }
+
+    /// Columns behind the last that the header names are no part of the next row.
+    fn skip_rest_of_line(&mut self) {
+        let mut line = Cursor::starting_at(self.bytes, self.at);
+        while line.field().is_some() {}
+        self.at = line.at();
     }
 
     /// How many rows `element` has, if what is left of the file can hold them; none where a row takes no byte.
@@ -162,11 +175,14 @@ impl<'a> Body<'a> {
     /// The next number as a finite coordinate.
     pub(super) fn coordinate(&mut self, scalar: Scalar) -> Result<Value, Fault> {
         let value = self.value(scalar)?;
-        if !value.value.is_finite() {
-            let text = value.value.to_string();
-            return Err(self.fault(ReadProblem::NotFinite { text }));
+        let text = || match self.encoding {
+            Encoding::Ascii => excerpt(&self.bytes[value.range.clone()]),
+            _ => format!("{:?}", value.value),
+        };
+        match checked_coordinate(value.value, text) {
+            Ok(_) => Ok(value),
+            Err(problem) => Err(self.fault(problem)),
         }
-        Ok(value)
     }
 
     /// The next number; NaN where a text has something else.
@@ -239,8 +255,23 @@ fn decode(scalar: Scalar, bytes: &[u8], is_big: bool) -> f64 {
         Scalar::U16 => f64::from(u16::from_le_bytes(number_bytes(bytes, is_big))),
         Scalar::I32 => f64::from(i32::from_le_bytes(number_bytes(bytes, is_big))),
         Scalar::U32 => f64::from(u32::from_le_bytes(number_bytes(bytes, is_big))),
+        Scalar::I64 => i64::from_le_bytes(number_bytes(bytes, is_big)) as f64,
+        Scalar::U64 => u64::from_le_bytes(number_bytes(bytes, is_big)) as f64,
+        Scalar::F16 => half(u16::from_le_bytes(number_bytes(bytes, is_big))),
         Scalar::F32 => f64::from(f32::from_le_bytes(number_bytes(bytes, is_big))),
         Scalar::F64 => f64::from_le_bytes(number_bytes(bytes, is_big)),
+    }
+}
+
+/// The number that 16 bits are: a sign, five bits of exponent, ten of fraction (IEEE 754, binary16).
+fn half(bits: u16) -> f64 {
+    let sign = if bits >> 15 == 1 { -1.0 } else { 1.0 };
+    let (exponent, fraction) = (i32::from(bits >> 10 & 0x1F), f64::from(bits & 0x3FF));
+    sign * match exponent {
+        0 => fraction * 2f64.powi(-24),
+        31 if fraction == 0.0 => f64::INFINITY,
+        31 => f64::NAN,
+        _ => (1024.0 + fraction) * 2f64.powi(exponent - 25),
     }
 }
 

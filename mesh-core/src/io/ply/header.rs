@@ -23,6 +23,9 @@ pub(super) enum Scalar {
     U16,
     I32,
     U32,
+    I64,
+    U64,
+    F16,
     F32,
     F64,
 }
@@ -36,6 +39,9 @@ impl Scalar {
             b"ushort" | b"uint16" => Self::U16,
             b"int" | b"int32" => Self::I32,
             b"uint" | b"uint32" => Self::U32,
+            b"int64" => Self::I64,
+            b"uint64" => Self::U64,
+            b"float16" => Self::F16,
             b"float" | b"float32" => Self::F32,
             b"double" | b"float64" => Self::F64,
             _ => return None,
@@ -46,14 +52,19 @@ impl Scalar {
     pub(super) fn size(self) -> usize {
         match self {
             Self::I8 | Self::U8 => 1,
-            Self::I16 | Self::U16 => 2,
+            Self::I16 | Self::U16 | Self::F16 => 2,
             Self::I32 | Self::U32 | Self::F32 => 4,
-            Self::F64 => 8,
+            Self::I64 | Self::U64 | Self::F64 => 8,
         }
     }
 
-    pub(super) fn is_float(self) -> bool {
+    /// Whether a coordinate can be put where one of this type was.
+    pub(super) fn holds_coordinates(self) -> bool {
         matches!(self, Self::F32 | Self::F64)
+    }
+
+    pub(super) fn is_float(self) -> bool {
+        matches!(self, Self::F16 | Self::F32 | Self::F64)
     }
 }
 
@@ -108,6 +119,8 @@ pub(super) struct Header {
     pub(super) n_comments: usize,
     /// Where the body starts.
     pub(super) body: usize,
+    /// Whether a text body has a line at least for each row, so that rows end where lines end.
+    pub(super) has_lines: bool,
 }
 
 impl Header {
@@ -116,13 +129,13 @@ impl Header {
         let mut encoding = None;
         let mut elements: Vec<Element> = Vec::new();
         let mut n_comments = 0;
-        let mut at = 0;
+        let mut at = Cursor::new(bytes).at();
         loop {
             let end = line_end(bytes, at, newline)?;
             let mut line = Cursor::starting_at(&bytes[..end], at);
             let keyword = line.field();
             match keyword.map(|k| k.text) {
-                None | Some(b"ply" | b"obj_info") => {}
+                None | Some(b"ply" | b"PLY" | b"obj_info") => {}
                 Some(b"comment") => n_comments += 1,
                 Some(b"format") => encoding = Some(read_encoding(&mut line)?),
                 Some(b"element") => elements.push(read_element(&mut line)?),
@@ -137,11 +150,15 @@ impl Header {
                 }
                 Some(b"end_header") => {
                     let expected = "a `format` line in the header";
+                    let encoding = encoding.ok_or_else(|| unexpected(&line, keyword, expected))?;
+                    let body = end + newline.len();
                     return Ok(Self {
-                        encoding: encoding.ok_or_else(|| unexpected(&line, keyword, expected))?,
+                        has_lines: encoding == Encoding::Ascii
+                            && has_lines(&bytes[body..], &elements),
+                        encoding,
                         elements,
                         n_comments,
-                        body: end + newline.len(),
+                        body,
                     });
                 }
                 Some(_) => return Err(unexpected(&line, keyword, "a line of a PLY header")),
@@ -149,6 +166,14 @@ impl Header {
             at = end + newline.len();
         }
     }
+}
+
+/// Whether there are at least as many lines with something on them as rows.
+fn has_lines(body: &[u8], elements: &[Element]) -> bool {
+    let n_rows = elements.iter().fold(0u64, |n, e| n.saturating_add(e.count));
+    let lines = body.split(|b| matches!(b, b'\n' | b'\r'));
+    let n_lines = lines.filter(|line| !line.trim_ascii().is_empty()).count();
+    n_lines as u64 >= n_rows
 }
 
 /// The line end that the first line uses: in a binary file, bytes of the body could pass for another.

@@ -11,9 +11,10 @@ use self::body::{push_doubles, push_header, Body, Value};
 use self::header::{Element, Header, Kind, Property, Scalar};
 use super::contents::{CarriedNormals, Contents, Morphs};
 use super::document::{Codec, Document, Geometry, Parsed};
-use super::error::ReadProblem;
+use super::error::{Place, ReadProblem};
 use super::fault::Fault;
-use super::text::Splice;
+use super::printable::printable;
+use super::text::{Cursor, Splice};
 use crate::{Point3, PolygonSoup, Vector3};
 
 pub(super) const CODEC: Codec = Codec {
@@ -23,6 +24,7 @@ pub(super) const CODEC: Codec = Codec {
     geometry: Geometry::Polygons,
     has_uvs: false,
     has_mark,
+    is_always_marked: true,
     has_statement: |_| false,
     read,
     write: |soup, _| Ok(write(soup)),
@@ -36,7 +38,9 @@ struct PlyFile {
 }
 
 fn has_mark(bytes: &[u8]) -> bool {
-    bytes.starts_with(b"ply") && matches!(bytes.get(3), Some(b'\n' | b'\r'))
+    let mut line = Cursor::new(bytes);
+    let keyword = line.field().map(|word| word.text);
+    matches!(keyword, Some(b"ply" | b"PLY")) && line.field().is_none() && line.left() > 0
 }
 
 const POSITION: [&str; 3] = ["x", "y", "z"];
@@ -61,6 +65,7 @@ fn read(bytes: Vec<u8>, _: &Path) -> Result<Parsed, Fault> {
     Ok(Parsed {
         contents: contents(&header, &soup),
         soup,
+        findings: Vec::new(),
         document: Box::new(PlyFile { bytes, header }),
     })
 }
@@ -150,16 +155,20 @@ fn read_vertices<'a>(
 }
 
 /// Which list of `element` holds the corners: the one called so, or else the first of whole numbers.
-fn corner_list(element: &Element) -> Option<usize> {
-    let is_list = |p: &Property| matches!(p.kind, Kind::List { item, .. } if !item.is_float());
+fn corner_list(element: &Element) -> Result<usize, Fault> {
+    let is_list = |p: &Property| matches!(p.kind, Kind::List { .. });
+    let is_whole = |p: &Property| matches!(p.kind, Kind::List { item, .. } if !item.is_float());
     let is_named = |p: &Property| matches!(p.name.as_str(), "vertex_indices" | "vertex_index");
-    let mut lists = element
-        .properties
-        .iter()
-        .enumerate()
-        .filter(|(_, p)| is_list(p));
-    let named = lists.clone().find(|(_, p)| is_named(p));
-    named.or_else(|| lists.next()).map(|(k, _)| k)
+    let properties = &element.properties;
+    let named = properties.iter().position(|p| is_list(p) && is_named(p));
+    let found = named.or_else(|| properties.iter().position(is_whole));
+    found.ok_or_else(|| {
+        let feature = format!(
+            "a PLY file without a list `vertex_indices` in its element `{}`",
+            printable(&element.name)
+        );
+        Fault::unsupported(feature, "name the list that holds the corners so")
+    })
 }
 
 /// Calls `visit` with the list of whole numbers in each row of `element`.
@@ -168,13 +177,16 @@ fn each_corner_list<'a>(
     element: &'a Element,
     mut visit: impl FnMut(&Body<'a>, &[i64]) -> Result<(), Fault>,
 ) -> Result<(), Fault> {
-    let corners_at = corner_list(element);
+    if element.count == 0 {
+        return Ok(());
+    }
+    let corners_at = corner_list(element)?;
     let mut items = Vec::new();
     body.each_row(element, |body, _| {
         items.clear();
         for (k, property) in element.properties.iter().enumerate() {
             match property.kind {
-                Kind::List { count, item } if corners_at == Some(k) => {
+                Kind::List { count, item } if corners_at == k => {
                     for _ in 0..body.list_length(count, item)? {
                         items.push(whole(body, item)?);
                     }
@@ -212,21 +224,24 @@ fn vertex_row(body: &Body<'_>, index: i64, soup: &PolygonSoup) -> Result<u32, Fa
         })
 }
 
+/// Where the faces come before the vertices.
 fn check_indices(soup: &PolygonSoup) -> Result<(), Fault> {
     let n_vertices = soup.positions.len();
-    match soup
-        .faces
-        .iter()
-        .flatten()
-        .find(|&&v| v as usize >= n_vertices)
-    {
-        None => Ok(()),
-        Some(&v) => Err(Fault::whole(ReadProblem::IndexOutOfRange {
-            index: i64::from(v),
-            n_vertices,
-            first: 0,
-        })),
+    let is_outside = |&v: &u32| v as usize >= n_vertices;
+    for (row, corners) in soup.faces.iter().enumerate() {
+        if let Some(&v) = corners.iter().find(|v| is_outside(v)) {
+            let element = "face".to_owned();
+            return Err(Fault {
+                place: Place::Row { element, row },
+                problem: ReadProblem::IndexOutOfRange {
+                    index: i64::from(v),
+                    n_vertices,
+                    first: 0,
+                },
+            });
+        }
     }
+    Ok(())
 }
 
 fn read_faces<'a>(
@@ -299,7 +314,7 @@ impl Document for PlyFile {
                 }
                 let (axis, scalar) = axis_of(property, NORMAL)?;
                 let n = normals.as_ref()?.changed(row)?;
-                scalar.is_float().then_some(n[axis])
+                scalar.holds_coordinates().then_some(n[axis])
             })?;
             break;
         }
@@ -308,7 +323,7 @@ impl Document for PlyFile {
 }
 
 fn is_widened(property: &Property) -> bool {
-    axis_of(property, POSITION).is_some_and(|(_, scalar)| !scalar.is_float())
+    axis_of(property, POSITION).is_some_and(|(_, scalar)| !scalar.holds_coordinates())
 }
 
 fn widen_positions(splice: &mut Splice<'_>, element: &Element) {

@@ -1,22 +1,24 @@
 //! The stepper: one engine for every parametrisation and every preset.
 
+mod changes;
+mod resume;
+
 use std::sync::Arc;
 
 use mesh_core::sampling::SeededRng;
 use mesh_core::{
     Landmark, Positions, Profile, Triangulation, UnitFrame, Vector3, VertexData, VertexId,
 };
-use mesh_loss::{Beyond, HardCorners, Matches, Overlap, SurfaceMatcher};
+use mesh_loss::{Beyond, Matches, Overlap, SurfaceMatcher};
 
 use crate::config::{Descent, DrapeConfig};
 use crate::coverage::{mark_uncovered, Pairing, Target, FAR_BEYOND, N_BEYOND};
-use crate::input::{check_finite, check_landmarks};
+use crate::input::check_length;
 use crate::network::NetworkMap;
 use crate::objective::{self, DistanceLoss, StructuralLoss, TermReport};
 use crate::regions::{Follow, Guidance, Regions};
-use crate::schedule::{Stage, Weights};
-use crate::setting::MAX_COUNT;
-use crate::{DrapeError, DrapeInput, DrapeState, Parametrization, Repair};
+use crate::schedule::Weights;
+use crate::{DrapeError, DrapeInput, Parametrization, Repair};
 
 /// So many times in a run, parts that nothing attracts follow the rest.
 const N_FOLLOWS: usize = 5;
@@ -77,60 +79,7 @@ impl Drape {
     /// A drape that moves its vertices by a map of your own; `config.parametrization` does not count.
     ///
     /// `make` is given the initial positions in the unit frame of the target, one per vertex; the positions of what it
-    /// returns are in that frame, too.
-    ///
-    /// A drape that only shifts the source as a whole, by 3 parameters t: `x = x₀ + t`, `dL/dt = Σᵢ dL/dxᵢ`.
-    ///
-    /// ```
-    /// use std::sync::Arc;
-    /// use mesh_core::{shapes, Positions, TargetSurface, TriangleSoup, Triangulation, Vector3, VertexData};
-    /// use neural_drape::{
-    ///     Drape, DrapeConfig, DrapeError, DrapeInput, Parametrization, StateReader, StateWriter,
-    /// };
-    ///
-    /// struct Shift(Positions);
-    ///
-    /// impl Parametrization for Shift {
-    ///     fn positions(&self) -> &Positions {
-    ///         &self.0
-    ///     }
-    ///     fn descend(&mut self, gradient: &VertexData<Vector3>, rate: f64) -> Result<(), DrapeError> {
-    ///         let sum: Vector3 = gradient.iter().sum();
-    ///         let step = sum.try_normalize(1e-12).unwrap_or_default() * rate;
-    ///         self.0.iter_mut().for_each(|p| *p -= step);
-    ///         Ok(())
-    ///     }
-    ///     fn set_progress(&mut self, _progress: f64) -> Result<(), DrapeError> {
-    ///         Ok(())
-    ///     }
-    ///     fn displace(&mut self, displacements: &VertexData<Vector3>) {
-    ///         self.0.iter_mut().zip(displacements).for_each(|(p, d)| *p += d);
-    ///     }
-    ///     fn save(&mut self, state: &mut StateWriter) {
-    ///         state.points(&self.0);
-    ///     }
-    ///     fn restore(&mut self, state: &mut StateReader<'_>) -> Result<(), DrapeError> {
-    ///         state.points(self.0.iter_mut())
-    ///     }
-    /// }
-    ///
-    /// let (mesh, rest) = shapes::quad_sphere(8).into_halfedge()?;
-    /// let target: Arc<dyn TargetSurface> = Arc::new(TriangleSoup::new(shapes::icosphere(3))?);
-    /// let input = DrapeInput {
-    ///     triangulation: &Arc::new(Triangulation::new(&mesh, &rest)),
-    ///     initial: &rest.map(|p| p + Vector3::new(0.3, 0.2, 0.0)),
-    ///     rest: &Arc::new(rest),
-    ///     target: &target,
-    ///     landmarks: &[],
-    /// };
-    /// let start = |initial: &Positions| Ok(Box::new(Shift(initial.clone())) as Box<dyn Parametrization>);
-    /// let mut drape = Drape::with_parametrization(input, DrapeConfig::quick(), start)?;
-    /// while drape.step()?.is_some() {}
-    /// let x = drape.positions();
-    /// let centre = x.iter().map(|p| p.coords).sum::<Vector3>() / x.len() as f64;
-    /// assert!(centre.norm() < 0.02);
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
+    /// returns are in that frame, too. [`Parametrization`] has an example.
     ///
     /// # Errors
     /// As for [`Self::new`], and what `make` returns.
@@ -145,13 +94,8 @@ impl Drape {
         let frame = input.target.principal_frame();
         let initial = input.initial.map(|p| frame.to_unit(p));
         let parametrization = make(&initial)?;
-        if parametrization.positions().len() != initial.len() {
-            return Err(DrapeError::LengthMismatch {
-                what: "the parametrization",
-                found: parametrization.positions().len(),
-                expected: initial.len(),
-            });
-        }
+        let n_moved = parametrization.positions().len();
+        check_length("the parametrization", n_moved, initial.len())?;
         let mut rng = SeededRng::new(config.seed);
         let mut matcher = SurfaceMatcher::new(input.triangulation, &initial, input.target, frame);
         let mut beyond = matcher.beyond(&initial, N_BEYOND, FAR_BEYOND, &mut rng);
@@ -258,23 +202,6 @@ impl Drape {
             .map(|p| self.frame.from_unit(p))
     }
 
-    /// Treats parts of the source as free or rigid from now on. Rigid ones take their shape at once.
-    ///
-    /// # Errors
-    /// Not one entry per vertex, or an attraction outside 0..=1; nothing changed.
-    pub fn set_regions(&mut self, regions: &Regions) -> Result<(), DrapeError> {
-        regions.check(self.gradient.len())?;
-        self.guidance = Guidance::new(
-            &self.triangulation,
-            &self.rest,
-            &self.initial,
-            regions,
-            &self.is_uncovered,
-        );
-        self.matcher.set_attraction(self.guidance.attraction());
-        self.settle()
-    }
-
     /// Puts bodies and carried pieces where they belong.
     fn settle(&mut self) -> Result<(), DrapeError> {
         let period = (self.n_iterations / N_FOLLOWS).max(1);
@@ -320,100 +247,6 @@ impl Drape {
                 before: defects,
             }
         }
-    }
-
-    /// Replaces the landmarks from the next step on.
-    ///
-    /// # Errors
-    /// A landmark names a vertex that is not there, or its place or target is not finite; the old landmarks stay.
-    pub fn set_landmarks(&mut self, landmarks: &[Landmark]) -> Result<(), DrapeError> {
-        check_landmarks(landmarks, self.gradient.len())?;
-        self.landmarks = landmarks.to_vec();
-        for landmark in &mut self.landmarks {
-            landmark.target = self.frame.to_unit(&landmark.target);
-        }
-        Ok(())
-    }
-
-    /// Moves every vertex by its entry, in the target's coordinates; the optimiser keeps its state.
-    ///
-    /// Source: Mesh Draping, Interactive Mode, where landmarks that are added deform the present result.
-    ///
-    /// # Errors
-    /// Not one finite displacement per vertex; nothing moved.
-    pub fn displace(&mut self, displacements: &VertexData<Vector3>) -> Result<(), DrapeError> {
-        if displacements.len() != self.gradient.len() {
-            return Err(DrapeError::LengthMismatch {
-                what: "the displacement",
-                found: displacements.len(),
-                expected: self.gradient.len(),
-            });
-        }
-        check_finite("the displacement", displacements.iter())?;
-        let scale = self.frame.scale;
-        self.parametrization
-            .displace(&displacements.map(|d| d / scale));
-        let x = self.parametrization.positions();
-        self.structure.anchor(&self.triangulation, x);
-        Ok(())
-    }
-
-    /// Adds iterations to the run, with the weights that it would have ended with; vertices stay anchored where they
-    /// were. A run has at most 10⁹ iterations.
-    pub fn extend(&mut self, n_iterations: usize) {
-        let n_iterations = n_iterations.min(MAX_COUNT.saturating_sub(self.n_iterations));
-        if let Some(&Stage { to, .. }) = self.config.stages.last() {
-            self.config.stages.push(Stage {
-                n_iterations,
-                from: to,
-                to,
-            });
-            self.n_iterations += n_iterations;
-        }
-    }
-
-    /// What the drape has come to, to go on from later with [`Self::restore`].
-    pub fn state(&mut self) -> DrapeState {
-        DrapeState::write(|state| {
-            state.count(self.iteration);
-            state.count(self.n_iterations);
-            state.word_position(self.rng.word_position());
-            let hard = self.matcher.hard_corners();
-            state.counts(&hard.of_mesh);
-            state.counts(&hard.of_target);
-            state.points(self.structure.anchored_at());
-            self.guidance.save(state);
-            self.parametrization.save(state);
-        })
-    }
-
-    /// Goes on where a drape of the same inputs and settings had come to. Landmarks stay those of this drape.
-    ///
-    /// # Errors
-    /// The state is that of another drape, or damaged; this drape is then of no more use.
-    pub fn restore(&mut self, state: &DrapeState) -> Result<(), DrapeError> {
-        let mut reader = state.reader();
-        let (iteration, n_iterations) = (reader.count()?, reader.count()?);
-        let possible = self.n_iterations..=MAX_COUNT;
-        if iteration > n_iterations || !possible.contains(&n_iterations) {
-            return Err(DrapeError::ForeignState);
-        }
-        self.extend(n_iterations - self.n_iterations);
-        self.iteration = iteration;
-        self.rng.set_word_position(reader.word_position()?);
-        let hard = HardCorners {
-            of_mesh: reader.counts()?,
-            of_target: reader.counts()?,
-        };
-        if !self.matcher.set_hard_corners(hard) {
-            return Err(DrapeError::ForeignState);
-        }
-        let mut anchor = self.structure.anchored_at().clone();
-        reader.points(anchor.iter_mut())?;
-        self.structure.anchor(&self.triangulation, &anchor);
-        self.guidance.restore(&mut reader)?;
-        self.parametrization.restore(&mut reader)?;
-        reader.finish()
     }
 
     /// The network behind the positions, as a map in the target's coordinates; none for explicit vertices, and once
