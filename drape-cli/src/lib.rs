@@ -27,6 +27,8 @@ use anyhow::Context as _;
 use clap::error::ErrorKind;
 use clap::Parser;
 
+/// No more threads are started, whatever is asked for: each takes memory, and none beyond the processors helps.
+const MAX_THREADS: usize = 512;
 /// Bad input, bad options, or a run that could not be finished.
 const FAILED: u8 = 2;
 
@@ -58,7 +60,13 @@ impl Cli {
         let Some(n) = self.threads else {
             return self.command.run();
         };
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(n.get()).build();
+        if n.get() > MAX_THREADS {
+            output::warn(&[format!(
+                "--threads {n} is more than this program starts: it uses {MAX_THREADS}"
+            )]);
+        }
+        let n = n.get().min(MAX_THREADS);
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(n).build();
         pool.context("cannot start threads")?
             .install(|| self.command.run())
     }

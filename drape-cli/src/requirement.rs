@@ -105,9 +105,8 @@ impl FromStr for Condition {
                 NAMES.join(", ")
             )
         })?;
-        let bound = bound
-            .parse()
-            .map_err(|_| format!("'{bound}' in '{text}' is not a number"))?;
+        let number = bound.parse().ok().filter(|bound: &f64| !bound.is_nan());
+        let bound = number.ok_or_else(|| format!("'{bound}' in '{text}' is not a number"))?;
         Ok(Self {
             figure,
             relation,
@@ -193,6 +192,7 @@ mod tests {
         let error = |text: &str| text.parse::<Requirements>().unwrap_err();
         assert!(error("quality=1").contains("no figure 'quality'"));
         assert!(error("q>=good").contains("'good'"));
+        assert!(error("q>=nan").contains("'nan'"));
         assert!(error("q 3").contains("has no"));
         assert!(error(" , ").contains("no condition"));
     }

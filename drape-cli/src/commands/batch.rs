@@ -44,6 +44,9 @@ pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
         "give --preset or --config; a config file may name its preset"
     );
     args.settings.preset()?;
+    for pattern in args.landmarks.iter().chain([&args.output]) {
+        check_pattern(pattern)?;
+    }
     let tasks = tasks(args)?;
     let rows = suite::run(&tasks, &args.summary, &Pool::new(args.jobs)?)?;
     finish(&rows, &args.summary)
@@ -104,6 +107,19 @@ fn option(name: &str, value: Option<impl clap::ValueEnum>) -> Option<String> {
     Some(format!("--{name}={}", value.get_name()))
 }
 
+/// Refuses a name in braces that stands for nothing.
+fn check_pattern(pattern: &str) -> anyhow::Result<()> {
+    let opened = pattern.split('{').skip(1);
+    let names = opened.filter_map(|rest| rest.split_once('}').map(|(name, _)| name));
+    for name in names {
+        ensure!(
+            ["source", "target", "folder"].contains(&name),
+            "{pattern}: {{{name}}} stands for nothing; there are {{source}}, {{target}} and {{folder}}"
+        );
+    }
+    Ok(())
+}
+
 /// The pattern with its names in braces replaced.
 fn fill(pattern: &str, source: &Path, target: &Path) -> String {
     let folder = target
@@ -131,6 +147,13 @@ mod tests {
             let tasks = tasks(&args).unwrap();
             assert!(tasks[0].options.iter().any(|o| o == option), "{option}");
         }
+    }
+
+    #[test]
+    fn unknown_names_in_braces_are_refused() {
+        assert!(check_pattern("out/{folder}-{target}-{source}.obj").is_ok());
+        let told = check_pattern("{targets}.obj").unwrap_err().to_string();
+        assert!(told.contains("{targets} stands for nothing"), "{told}");
     }
 
     #[test]

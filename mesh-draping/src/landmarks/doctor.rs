@@ -28,6 +28,10 @@ const LEFT_OUT_RATIO: f64 = 4.0;
 const LEFT_OUT_LEAST: f64 = 0.04;
 /// It says something only where the others expect each other this well, on the median, in longest sides.
 const MUCH_ALIKE: f64 = 0.03;
+/// So many pairs that share a place are told one by one.
+const MAX_SAME_PLACES: usize = 20;
+/// With more landmarks than this no exchanged pair is looked for: every pair of them would have to be tried.
+const ENOUGH_TO_TRUST: usize = 200;
 /// Fewer landmarks say too little about each other.
 const ENOUGH_TO_COMPARE: usize = 6;
 /// Fewer than this leave the affine map open.
@@ -112,7 +116,7 @@ impl<'a> Case<'a> {
     }
 
     fn same_places(&self) -> Vec<Finding> {
-        let mut findings = Vec::new();
+        let (mut findings, mut n_more) = (Vec::new(), 0);
         for (j, b) in self.pairs.iter().enumerate() {
             for (i, a) in self.pairs[..j].iter().enumerate() {
                 let same_source = (a.source - b.source).norm() <= SAME_PLACE * self.source_side;
@@ -123,13 +127,18 @@ impl<'a> Case<'a> {
                     (false, true) => Shared::TargetOnly,
                     (false, false) => continue,
                 };
-                findings.push(Finding::SamePlace {
-                    a: self.label(i),
-                    b: self.label(j),
-                    on,
-                });
+                if findings.len() < MAX_SAME_PLACES {
+                    findings.push(Finding::SamePlace {
+                        a: self.label(i),
+                        b: self.label(j),
+                        on,
+                    });
+                } else {
+                    n_more += 1;
+                }
             }
         }
+        findings.extend((n_more > 0).then_some(Finding::MoreSamePlaces { n: n_more }));
         findings
     }
 
@@ -238,7 +247,7 @@ fn others_agree(pairs: &[PointPair], i: usize, j: usize) -> bool {
 
 /// The two pairs whose exchange lowers the misfit most, if it does so by enough.
 fn exchanged(pairs: &[PointPair]) -> Option<(usize, usize)> {
-    if pairs.len() < ENOUGH_FOR_AFFINE + 1 {
+    if !(ENOUGH_FOR_AFFINE + 1..=ENOUGH_TO_TRUST).contains(&pairs.len()) {
         return None;
     }
     let before = Similarity::fit(pairs).rms(pairs);
@@ -317,6 +326,16 @@ mod tests {
         let few = findings(|l| l.truncate(3));
         assert_eq!(few[0], Finding::TooFew { n: 3, least: 4 });
         assert!(findings(Vec::clear).is_empty());
+    }
+
+    #[test]
+    fn a_thousand_landmarks_on_eight_vertices_are_told_in_few_lines() {
+        let many = findings(|l| {
+            let eight = l.clone();
+            (0..124).for_each(|_| l.extend(eight.clone()));
+        });
+        assert_eq!(many.len(), MAX_SAME_PLACES + 1, "{:?}", many.last());
+        assert!(matches!(many.last(), Some(Finding::MoreSamePlaces { .. })));
     }
 
     #[test]

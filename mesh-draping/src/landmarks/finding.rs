@@ -36,6 +36,11 @@ pub enum Finding {
         /// On which shapes.
         on: Shared,
     },
+    /// More pairs of landmarks share places than are told one by one.
+    MoreSamePlaces {
+        /// How many more.
+        n: usize,
+    },
     /// A mirror image fits better: left and right are probably exchanged throughout.
     Mirrored,
     /// Two landmarks are probably exchanged.
@@ -69,7 +74,10 @@ impl Finding {
     /// The landmarks it is about; an application that numbers from 1 changes their labels.
     pub fn labels_mut(&mut self) -> impl Iterator<Item = &mut Label> {
         let (first, second) = match self {
-            Self::TooFew { .. } | Self::Few { .. } | Self::Mirrored => (None, None),
+            Self::TooFew { .. }
+            | Self::Few { .. }
+            | Self::MoreSamePlaces { .. }
+            | Self::Mirrored => (None, None),
             Self::OffSurface { landmark, .. } | Self::Unexpected { landmark, .. } => {
                 (Some(landmark), None)
             }
@@ -99,6 +107,9 @@ impl fmt::Display for Finding {
                 percent(*distance)
             ),
             Self::SamePlace { a, b, on } => write!(f, "{a} and {b} {on}"),
+            Self::MoreSamePlaces { n } => {
+                write!(f, "{n} more pairs of landmarks share places, likewise")
+            }
             Self::Mirrored => f.write_str(
                 "the landmarks fit a mirror image better: left and right are probably exchanged throughout",
             ),
