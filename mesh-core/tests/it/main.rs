@@ -20,6 +20,7 @@ mod io_stl;
 mod io_support;
 mod io_xyz;
 mod point_cloud;
+mod skipped;
 mod target_variants;
 mod triangle_soup;
 mod triangulation;

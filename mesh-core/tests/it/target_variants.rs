@@ -5,8 +5,9 @@ use std::path::PathBuf;
 use mesh_core::sampling::SeededRng;
 use mesh_core::{io, NormalSign, PointCloud, TargetSurface, TriangleSoup};
 
+use crate::skipped::skip;
+
 /// The folders of the pairs that have variants; none where the data is not there.
-#[allow(clippy::print_stderr, reason = "says that a test had nothing to do")]
 fn pairs() -> Vec<PathBuf> {
     let default = concat!(env!("CARGO_MANIFEST_DIR"), "/../../shared/data");
     let data = std::env::var_os("DRAPE_DATA").map_or_else(|| PathBuf::from(default), PathBuf::from);
@@ -14,7 +15,7 @@ fn pairs() -> Vec<PathBuf> {
         ["horse_wolf", "face_augustus", "body_man_tpose"].map(|pair| data.join("pairs").join(pair));
     let found: Vec<PathBuf> = pairs.into_iter().filter(|p| p.is_dir()).collect();
     if found.is_empty() {
-        eprintln!("skipped: no data at {}; set DRAPE_DATA", data.display());
+        skip(&format!("no data at {}; set DRAPE_DATA", data.display()));
     }
     found
 }
