@@ -7,6 +7,7 @@ mod io_data;
 mod io_dialects;
 mod io_findings;
 mod io_gltf;
+mod io_gltf_crate;
 mod io_gltf_dialects;
 mod io_limits;
 mod io_morphs;
