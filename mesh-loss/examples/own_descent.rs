@@ -8,8 +8,8 @@
 use std::error::Error;
 use std::sync::Arc;
 
-use mesh_core::sampling::SeededRng;
-use mesh_core::{
+use mesh_loss::mesh_core::sampling::SeededRng;
+use mesh_loss::mesh_core::{
     shapes, Landmark, Point3, Positions, Profile, TargetSurface, TriangleSoup, Triangulation,
     UnitFrame, Vector3, VertexData, VertexId,
 };

@@ -19,7 +19,7 @@
 //!
 //! ```
 //! use std::sync::Arc;
-//! use mesh_core::{shapes, Point3, Positions, Triangulation, Vector3, VertexData};
+//! use mesh_loss::mesh_core::{shapes, Point3, Positions, Triangulation, Vector3, VertexData};
 //! use mesh_loss::{CornerAngle, Loss};
 //!
 //! let (mesh, rest) = shapes::quad_sphere(6).into_halfedge()?;
@@ -32,10 +32,11 @@
 //! let nearer: Positions = x.iter().zip(&gradient).map(|(p, g)| p - g).collect();
 //! let after = angles.accumulate(&nearer, 1.0, &mut gradient);
 //! assert!(0.0 < after && after < before);
-//! # Ok::<(), mesh_core::TopologyError>(())
+//! # Ok::<(), mesh_loss::mesh_core::TopologyError>(())
 //! ```
 //!
-//! `examples/own_descent.rs` is a whole descent on terms of this crate.
+//! `examples/own_descent.rs` is a whole descent on terms of this crate. The crate whose types the signatures name,
+//! [`mesh_core`], is exported again.
 
 mod area_kl;
 mod chamfer;
@@ -72,6 +73,8 @@ pub use matches::{Beyond, Matches, Overlap, SamplingConfig, SurfaceMatch};
 pub use normal_agreement::NormalAgreement;
 pub use triangle_quality::TriangleQuality;
 pub use worst_distance::WorstDistance;
+
+pub use mesh_core;
 
 /// The examples of the README, which are tested as those of the documentation are.
 #[cfg(doctest)]

@@ -25,6 +25,8 @@ pub use model::{Facet, Model};
 pub use raster::{draw, Look, Shot};
 pub use report::{html, Page};
 
+pub use {mesh_core, mesh_draping};
+
 /// The examples of the README, which are tested as those of the documentation are.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

@@ -7,7 +7,9 @@ use std::sync::mpsc::{channel, Receiver, Sender, TryRecvError};
 use std::sync::Arc;
 use std::thread;
 
-use mesh_core::{shapes, Point3, Positions, TargetSurface, TriangleSoup, Triangulation};
+use neural_drape::mesh_core::{
+    shapes, Point3, Positions, TargetSurface, TriangleSoup, Triangulation,
+};
 use neural_drape::{Drape, DrapeConfig, DrapeError, DrapeInput};
 
 /// What the window asks of the thread.

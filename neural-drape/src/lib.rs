@@ -14,7 +14,9 @@
 //!
 //! ```
 //! use std::sync::Arc;
-//! use mesh_core::{shapes, Landmark, Point3, TargetSurface, TriangleSoup, Triangulation, VertexId};
+//! use neural_drape::mesh_core::{
+//!     shapes, Landmark, Point3, TargetSurface, TriangleSoup, Triangulation, VertexId,
+//! };
 //! use neural_drape::{Drape, DrapeConfig, DrapeInput};
 //!
 //! // A sphere of quads over an ellipsoid of triangles.
@@ -45,7 +47,7 @@
 //! `examples/threaded.rs` drapes on a thread, with progress, pause and cancel.
 //!
 //! The cargo feature `network`, on by default, brings the paper's network (and dfdx); the preconditioned vertices need
-//! none of it.
+//! none of it. The crates whose types the signatures name, [`mesh_core`] and [`mesh_loss`], are exported again.
 
 mod check;
 mod config;
@@ -82,6 +84,8 @@ pub use state::{DrapeState, StateReader, StateWriter};
 pub use studies::Study;
 pub use vertices::{Vertices, VerticesConfig};
 pub use warp::{Warp, WarpError, WarpInput};
+
+pub use {mesh_core, mesh_loss};
 
 /// The examples of the README, which are tested as those of the documentation are.
 #[cfg(doctest)]
