@@ -179,7 +179,9 @@ impl<'a> Case<'a> {
             (map.rms(&others), k, map.miss(&one))
         });
         let (rms, k, miss) = without.min_by(|a, b| a.0.total_cmp(&b.0))?;
-        let is_far_better = rms < OUTLIER_GAIN * Similarity::fit(pairs).rms(pairs);
+        // Where all fit exactly, one of them is the worst by rounding alone.
+        let is_off = miss > SAME_PLACE * self.side;
+        let is_far_better = is_off && rms < OUTLIER_GAIN * Similarity::fit(pairs).rms(pairs);
         let (k, distance) = if is_far_better {
             (k, miss / self.side)
         } else {
