@@ -156,7 +156,7 @@ class App {
   // Rays of a drag go one after the other; those that come meanwhile are passed over, but the last.
   async drag(view, landmark, ray, done) {
     if (this.dragging) {
-      this.dragging.next = [view, landmark, ray, done || this.dragging.next?.[3]];
+      this.dragging.next = [view, landmark, ray, done || this.dragging.next?.[3] === true];
       return;
     }
     this.dragging = { next: null };
