@@ -6,7 +6,7 @@ use anyhow::{Context as _, Result};
 use mesh_core::Positions;
 use mesh_draping::{Pair, Preset, Source, Target};
 use neural_drape::network::NetworkMap;
-use neural_drape::{StepReport, Warp, WarpInput};
+use neural_drape::{StepReport, Warp};
 
 use crate::logged_run::LoggedRun;
 use crate::session::{self, landmarks, InputRecord};
@@ -32,13 +32,8 @@ impl Replayed {
     /// # Errors
     /// The map cannot be made of these shapes.
     pub fn warp(&self) -> Result<Warp> {
-        Ok(Warp::new(WarpInput {
-            triangulation: self.pair.source.triangulation(),
-            rest: self.pair.source.rest(),
-            initial: &self.initial,
-            draped: &self.draped,
-            network: self.network.clone(),
-        })?)
+        let network = self.network.clone();
+        Ok(self.pair.warp(&self.initial, &self.draped, network)?)
     }
 }
 

@@ -3,7 +3,9 @@
 use mesh_core::{Landmark, Positions};
 use mesh_init::InitInput;
 use neural_drape::network::NetworkMap;
-use neural_drape::{Drape, DrapeConfig, DrapeInput, DrapeState, Regions, Repair, StepReport};
+use neural_drape::{
+    Drape, DrapeConfig, DrapeError, DrapeInput, DrapeState, Regions, Repair, StepReport,
+};
 
 use crate::ending::{decided_overlap, left_out, repaired};
 use crate::explain::Counted;
@@ -276,13 +278,18 @@ impl Draping {
     /// Not one entry per vertex of the source, or an attraction outside 0..=1.
     pub fn set_regions(&mut self, regions: Regions) -> Result<(), Error> {
         self.pair.check_lengths(&regions, None)?;
-        match &self.stand_in {
-            Some(stand_in) => self.drape.set_regions(&stand_in.regions(&regions))?,
-            None => self.drape.set_regions(&regions)?,
-        }
+        self.treat(&regions)?;
         self.regions = regions;
         self.ensure_time();
         Ok(())
+    }
+
+    /// Hands the regions of the source to what is draped.
+    fn treat(&mut self, regions: &Regions) -> Result<(), DrapeError> {
+        match &self.stand_in {
+            Some(stand_in) => self.drape.set_regions(&stand_in.regions(regions)),
+            None => self.drape.set_regions(regions),
+        }
     }
 
     /// Gives the run more iterations.
@@ -332,10 +339,7 @@ impl Draping {
             None => self.drape.set_landmarks(&landmarks)?,
         }
         if regions != self.regions {
-            match &self.stand_in {
-                Some(stand_in) => self.drape.set_regions(&stand_in.regions(&regions))?,
-                None => self.drape.set_regions(&regions)?,
-            }
+            self.treat(&regions)?;
         }
         self.drape.restore(state)?;
         (self.pair.landmarks, self.regions) = (landmarks, regions);

@@ -5,7 +5,7 @@ use std::path::Path;
 use mesh_core::{Positions, UnitFrame, VertexData};
 use mesh_metrics::Report;
 use neural_drape::network::NetworkMap;
-use neural_drape::{Warp, WarpInput};
+use neural_drape::Warp;
 
 use crate::explain::{explain, Counted};
 use crate::{Error, Explanation, History, Note, Pair, Preset, Stages};
@@ -78,13 +78,8 @@ impl Outcome {
     /// # Errors
     /// The map cannot be made of these shapes.
     pub fn warp(&self) -> Result<Warp, Error> {
-        Ok(Warp::new(WarpInput {
-            triangulation: self.pair.source.triangulation(),
-            rest: self.pair.source.rest(),
-            initial: &self.initial,
-            draped: &self.draped,
-            network: self.network.clone(),
-        })?)
+        let network = self.network.clone();
+        self.pair.warp(&self.initial, &self.draped, network)
     }
 
     /// Distance of each vertex from another place, in longest sides of the target's box.

@@ -3,7 +3,8 @@
 use mesh_core::{Landmark, Positions};
 use mesh_init::InitError;
 use mesh_metrics::{evaluate, EvaluationConfig, EvaluationInput, Report};
-use neural_drape::{DrapeError, Regions};
+use neural_drape::network::NetworkMap;
+use neural_drape::{DrapeError, Regions, Warp, WarpInput};
 
 use crate::landmarks::{examine, Finding};
 use crate::{Error, Note, Source, Target};
@@ -20,6 +21,26 @@ pub struct Pair {
 }
 
 impl Pair {
+    /// What a drape from `initial` to `draped` does to space, to do it to other points; through `network`, if that moved
+    /// the vertices. Both shapes are in the target's coordinates.
+    ///
+    /// # Errors
+    /// The map cannot be made of these shapes.
+    pub fn warp(
+        &self,
+        initial: &Positions,
+        draped: &Positions,
+        network: Option<NetworkMap>,
+    ) -> Result<Warp, Error> {
+        Ok(Warp::new(WarpInput {
+            triangulation: self.source.triangulation(),
+            rest: self.source.rest(),
+            initial,
+            draped,
+            network,
+        })?)
+    }
+
     /// What is probably wrong with the landmarks.
     pub fn findings(&self) -> Vec<Finding> {
         examine(self)
