@@ -1,16 +1,121 @@
 //! Where a picture is taken from: a direction, an up axis, and a frame that fits the shape.
 
+use std::fmt;
 use std::str::FromStr;
 
 use mesh_core::{Point3, Vector3};
+use nalgebra::{Matrix3, Rotation3};
 
-/// Which axis points up.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Up {
-    /// +Y up, front towards +Z (Blender's OBJ export, Maya, glTF).
-    Y,
-    /// +Z up, front towards −Y (Blender's own axes, scanners).
-    Z,
+/// Which direction points up, and with it where the front is.
+///
+/// Fronts by convention: +Z for ±Y up (Blender's OBJ export, Maya, glTF), −Y for +Z up (Blender's own axes, scanners), +Y
+/// for −Z up, +Z for ±X up. A direction between the axes has the front of the nearest one, turned along.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Up {
+    direction: Vector3,
+}
+
+impl Up {
+    /// +X up.
+    pub const X: Self = Self::of([1.0, 0.0, 0.0]);
+    /// +Y up.
+    pub const Y: Self = Self::of([0.0, 1.0, 0.0]);
+    /// +Z up.
+    pub const Z: Self = Self::of([0.0, 0.0, 1.0]);
+    /// −X up.
+    pub const MINUS_X: Self = Self::of([-1.0, 0.0, 0.0]);
+    /// −Y up.
+    pub const MINUS_Y: Self = Self::of([0.0, -1.0, 0.0]);
+    /// −Z up.
+    pub const MINUS_Z: Self = Self::of([0.0, 0.0, -1.0]);
+    /// The directions of the axes, and their names.
+    pub(crate) const AXES: [(Self, &'static str); 6] = [
+        (Self::X, "x"),
+        (Self::MINUS_X, "-x"),
+        (Self::Y, "y"),
+        (Self::MINUS_Y, "-y"),
+        (Self::Z, "z"),
+        (Self::MINUS_Z, "-z"),
+    ];
+
+    const fn of([x, y, z]: [f64; 3]) -> Self {
+        Self {
+            direction: Vector3::new(x, y, z),
+        }
+    }
+
+    /// Up along `direction`, of any length; none where that is zero or not finite.
+    pub fn along(direction: &Vector3) -> Option<Self> {
+        let direction = direction.try_normalize(0.0)?;
+        let is_finite = direction.iter().all(|x| x.is_finite());
+        is_finite.then_some(Self { direction })
+    }
+
+    /// The unit direction that points up.
+    pub fn direction(&self) -> Vector3 {
+        self.direction
+    }
+
+    /// The axis that is nearest.
+    pub(crate) fn nearest_axis(&self) -> Self {
+        let nearer = |a: Self, b: Self| {
+            let is_nearer = b.direction.dot(&self.direction) > a.direction.dot(&self.direction);
+            if is_nearer {
+                b
+            } else {
+                a
+            }
+        };
+        Self::AXES
+            .iter()
+            .map(|(axis, _)| *axis)
+            .fold(Self::Y, nearer)
+    }
+
+    /// The shape's directions that are seen to the right, upwards and towards the viewer from the front: its columns.
+    fn frame(&self) -> Matrix3<f64> {
+        let axis = self.nearest_axis();
+        let front = if axis == Self::Z {
+            -Vector3::y()
+        } else if axis == Self::MINUS_Z {
+            Vector3::y()
+        } else {
+            Vector3::z()
+        };
+        let up = axis.direction;
+        let upright = Matrix3::from_columns(&[up.cross(&front), up, front]);
+        // The nearest axis is less than 55° away, so that there is one smallest turn.
+        let turn = Rotation3::rotation_between(&up, &self.direction);
+        turn.map_or(upright, |turn| turn * upright)
+    }
+}
+
+/// A text that names no axis.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("use x, y, z, -x, -y or -z")]
+pub struct UpError;
+
+/// `x`, `y`, `z`, `-x`, `-y` or `-z`.
+impl FromStr for Up {
+    type Err = UpError;
+
+    fn from_str(text: &str) -> Result<Self, UpError> {
+        let lower = text.to_ascii_lowercase();
+        let named = Self::AXES.iter().find(|(_, name)| *name == lower);
+        named.map(|(up, _)| *up).ok_or(UpError)
+    }
+}
+
+/// The name of the axis, or the three components of a direction between the axes.
+impl fmt::Display for Up {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let named = Self::AXES.iter().find(|(up, _)| up == self);
+        if let Some((_, name)) = named {
+            return f.write_str(name);
+        }
+        let [x, y, z] = self.direction.into();
+        write!(f, "({x:.2}, {y:.2}, {z:.2})")
+    }
 }
 
 /// A direction to look from: degrees around the up axis (0 = front, 90 = the side at +X) and above the horizon.
@@ -78,10 +183,8 @@ impl Axes {
     pub fn new(view: View, up: Up) -> Self {
         let (sin_a, cos_a) = view.azimuth.to_radians().sin_cos();
         let (sin_e, cos_e) = view.elevation.to_radians().sin_cos();
-        let to_world = |x, y, z| match up {
-            Up::Y => Vector3::new(x, y, z),
-            Up::Z => Vector3::new(x, -z, y),
-        };
+        let frame = up.frame();
+        let to_world = |x, y, z| frame * Vector3::new(x, y, z);
         Self {
             right: to_world(cos_a, 0.0, -sin_a),
             up: to_world(-sin_a * sin_e, cos_e, -cos_a * sin_e),
@@ -154,31 +257,35 @@ mod tests {
 
     #[test]
     fn axes_are_right_handed_and_perpendicular() {
-        for up in [Up::Y, Up::Z] {
+        let oblique = Up::along(&Vector3::new(0.3, -2.0, 0.7)).unwrap();
+        for up in Up::AXES.map(|(up, _)| up).into_iter().chain([oblique]) {
             for azimuth in [0.0, 35.0, 200.0] {
-                let a = Axes::new(
-                    View {
-                        azimuth,
-                        elevation: 20.0,
-                    },
-                    up,
-                );
+                let elevation = 20.0;
+                let a = Axes::new(View { azimuth, elevation }, up);
                 assert!((a.right.cross(&a.up) - a.towards_viewer).norm() < 1e-12);
                 assert!((a.right.norm() - 1.0).abs() < 1e-12);
+                // cos 20° of what points up is seen upwards.
+                assert!((a.up.dot(&up.direction()) - 0.939_692_620_785_908_4).abs() < 1e-12);
             }
         }
-        assert!(
-            (Axes::new(
-                View {
-                    azimuth: 0.0,
-                    elevation: 0.0
-                },
-                Up::Z
-            )
-            .up - Vector3::z())
-            .norm()
-                < 1e-12
-        );
+    }
+
+    #[test]
+    fn fronts_are_those_of_the_programs_that_write_the_files() {
+        let front = |up| Axes::new("front".parse().unwrap(), up).towards_viewer;
+        assert!((front(Up::Y) - Vector3::z()).norm() < 1e-12);
+        assert!((front(Up::Z) + Vector3::y()).norm() < 1e-12);
+    }
+
+    #[test]
+    fn an_up_is_read_as_it_is_shown() {
+        for (up, name) in Up::AXES {
+            assert_eq!(
+                (name.parse::<Up>().unwrap(), up.to_string()),
+                (up, name.to_owned())
+            );
+        }
+        assert!("w".parse::<Up>().is_err() && Up::along(&Vector3::zeros()).is_none());
     }
 
     #[test]

@@ -5,7 +5,7 @@ use mesh_draping::mesh_init::PointPair;
 use mesh_draping::{Pair, Similarity};
 use nalgebra::Matrix3;
 
-use crate::{color, draw, Axes, Image, Look, Model, RenderError, Shot, Up, View};
+use crate::{color, draw, Axes, Image, Look, Model, RenderError, Shot, Up, Upright, View};
 
 /// Distance at the bright end of the heat map, in longest sides of the target's box.
 pub const DISTANCE_AT_TOP: f64 = 0.01;
@@ -25,25 +25,32 @@ pub struct Gallery<'a> {
 }
 
 impl<'a> Gallery<'a> {
-    /// Pictures of `size` pixels along each side; `placed` is the source in the target's coordinates.
+    /// Pictures of `size` pixels along each side; `placed` is the source in the target's coordinates, and `up` what points
+    /// up there: what the shapes say where it is none.
     ///
     /// # Errors
     /// A target that cannot be drawn.
     pub fn new(
         pair: &'a Pair,
         placed: &Positions,
-        up: Up,
+        up: Option<Up>,
         size: usize,
     ) -> Result<Self, RenderError> {
         let matches = pair.source.rest().iter().zip(placed.iter());
         let matches = matches.map(|(&source, &target)| PointPair { source, target });
+        let turn = Similarity::fit(&matches.collect::<Vec<_>>()).turn;
         Ok(Self {
             target: Model::of_target(&pair.target)?,
-            turn: Similarity::fit(&matches.collect::<Vec<_>>()).turn,
+            up: up.unwrap_or_else(|| Upright::of_pair(pair, &turn).up),
+            turn,
             pair,
-            up,
             size,
         })
+    }
+
+    /// What points up in all pictures, in the target's coordinates.
+    pub fn up(&self) -> Up {
+        self.up
     }
 
     fn shot(&self, view: View) -> Shot {

@@ -4,6 +4,7 @@
 //! |---|---|
 //! | draw a mesh or a cloud | [`draw`], [`Model`], [`Look`], [`Shot`] |
 //! | draw the shapes of a drape, all from one direction | [`Gallery`] |
+//! | find which way is up | [`Upright`], [`Up`] |
 //! | put pictures beside each other, write a PNG file | [`Image`] |
 //! | make the report page of a drape | [`Page`] |
 //! | build another self-contained page | [`html`] |
@@ -16,14 +17,16 @@ mod image;
 mod model;
 mod raster;
 mod report;
+mod upright;
 
-pub use camera::{Axes, Up, View, ViewError};
+pub use camera::{Axes, Up, UpError, View, ViewError};
 pub use error::RenderError;
 pub use gallery::{Gallery, DISTANCE_AT_TOP, STRETCH_AT_TOP, TRUTH_AT_TOP};
 pub use image::{Image, Pixel};
 pub use model::{Facet, Model};
 pub use raster::{draw, Look, Shot};
 pub use report::{html, Page};
+pub use upright::Upright;
 
 pub use {mesh_core, mesh_draping};
 

@@ -71,6 +71,23 @@ fn metrics_agree_with_the_drape_that_made_the_result() {
 }
 
 #[test]
+fn what_points_up_in_a_picture_can_be_told() {
+    let place = Workplace::new();
+    for up in ["", "--up y", "--up -x"] {
+        let line = format!("inspect target.ply --render up{}.png {up}", up.len());
+        place.drape(&line).well();
+    }
+    let [found, y, minus_x] =
+        [0, 6, 7].map(|n| std::fs::read(place.path(&format!("up{n}.png"))).expect("a picture"));
+    // A ball has no feet.
+    assert!(found == y && minus_x != y);
+
+    let ended = place.drape("inspect target.ply --render out.png --up w");
+    assert_eq!(ended.code, Some(2));
+    assert!(ended.stderr.contains("-z"), "{}", ended.stderr);
+}
+
+#[test]
 fn inspect_tells_what_is_in_a_file() {
     let place = Workplace::new();
     let json = place

@@ -8,18 +8,9 @@ pub(crate) struct ViewArgs {
     /// Direction to look from: quarter, front, side, back, top or AZIMUTH,ELEVATION in degrees; may be repeated
     #[arg(long, value_name = "VIEW", allow_hyphen_values = true)]
     pub(crate) view: Vec<View>,
-    /// Axis that points up in the target's file
-    #[arg(long, value_name = "AXIS", default_value = "y")]
-    pub(crate) up: UpArg,
-}
-
-/// [`Up`] on the command line.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
-pub(crate) enum UpArg {
-    /// +Y up, front towards +Z (Blender's OBJ export, Maya, glTF)
-    Y,
-    /// +Z up, front towards −Y (Blender's own axes, scanners)
-    Z,
+    /// Axis that points up in the target's file: x, y, z, -x, -y or -z; found from the shapes where not given
+    #[arg(long, value_name = "AXIS", allow_hyphen_values = true)]
+    pub(crate) up: Option<Up>,
 }
 
 impl ViewArgs {
@@ -27,7 +18,7 @@ impl ViewArgs {
     pub(crate) fn none() -> Self {
         Self {
             view: Vec::new(),
-            up: UpArg::Y,
+            up: None,
         }
     }
 
@@ -37,14 +28,6 @@ impl ViewArgs {
             default.to_vec()
         } else {
             self.view.clone()
-        }
-    }
-
-    /// The axis that points up.
-    pub(crate) fn up(&self) -> Up {
-        match self.up {
-            UpArg::Y => Up::Y,
-            UpArg::Z => Up::Z,
         }
     }
 }

@@ -76,7 +76,7 @@ pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let report = pair.judge(&positions, truth.as_ref())?;
     pair.source.write(&args.output, &positions)?;
     if let Some(path) = &args.render {
-        let gallery = Gallery::new(&pair, &positions, args.view.up(), PICTURE_SIZE)?;
+        let gallery = Gallery::new(&pair, &positions, args.view.up, PICTURE_SIZE)?;
         let row = |view| {
             Image::row(&[
                 gallery.source(view),

@@ -7,7 +7,7 @@ use anyhow::Context as _;
 use mesh_core::io::{self, write_atomic};
 use mesh_draping::parts::inner_surfaces;
 use mesh_draping::{Seams, Source, Target, Treatment};
-use mesh_render::{color, draw, Axes, Image, Look, Model, Shot, View};
+use mesh_render::{color, draw, Axes, Image, Look, Model, Shot, Upright, View};
 
 use crate::args::ViewArgs;
 use crate::inspection::Inspection;
@@ -68,17 +68,14 @@ pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
         }
     }
     if let Some(path) = &args.render {
-        let is_cloud = file.soup().faces.is_empty();
-        let model = if is_cloud {
-            Model::of_target(&Target::read(&args.file)?)?
-        } else {
-            Model::of_soup(file.soup())?
-        };
+        let shape = Target::of_file(file)?;
+        let model = Model::of_target(&shape)?;
+        let up = args.view.up.unwrap_or_else(|| Upright::of_shape(&shape).up);
         let views = args
             .view
             .views_or(&[View::FRONT_QUARTER, View::BACK_QUARTER]);
         let shot = |view: &View| Shot {
-            axes: Axes::new(*view, args.view.up()),
+            axes: Axes::new(*view, up),
             size: PICTURE_SIZE,
         };
         let pictures = views

@@ -69,7 +69,7 @@ pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
         say(&report.to_string())?;
     }
     if let Some(path) = &args.render {
-        let gallery = Gallery::new(&pair, &draped, args.view.up(), PICTURE_SIZE)?;
+        let gallery = Gallery::new(&pair, &draped, args.view.up, PICTURE_SIZE)?;
         let row = |view| {
             Image::row(&[
                 gallery.target(view),

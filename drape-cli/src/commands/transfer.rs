@@ -184,7 +184,7 @@ impl Done<'_> {
 
     fn gallery(&self, size: usize) -> anyhow::Result<Gallery<'_>> {
         let (pair, initial) = (&self.outcome.pair, &self.outcome.initial);
-        Ok(Gallery::new(pair, initial, self.args.view.up(), size)?)
+        Ok(Gallery::new(pair, initial, self.args.view.up, size)?)
     }
 
     /// All figures by name: of the result, of time and memory.

@@ -8,7 +8,7 @@ use axum::http::{header, StatusCode};
 use axum::response::{IntoResponse, Response};
 use mesh_draping::landmarks::{write, Form};
 use mesh_draping::{initial_deformation, Outcome, Preset};
-use mesh_render::{Gallery, Page, Up, View};
+use mesh_render::{Gallery, Page, View};
 use tokio::sync::oneshot;
 use tokio::task::spawn_blocking;
 
@@ -184,7 +184,7 @@ fn report(made: Replayed) -> Result<String> {
     let page = Page {
         title: "A drape made in the studio",
         outcome: &outcome,
-        gallery: &Gallery::new(&outcome.pair, &outcome.initial, Up::Y, REPORT_PICTURE)?,
+        gallery: &Gallery::new(&outcome.pair, &outcome.initial, None, REPORT_PICTURE)?,
         views: &[View::FRONT_QUARTER, View::BACK_QUARTER],
         warnings: &warnings,
         seconds: None,

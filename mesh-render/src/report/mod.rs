@@ -88,7 +88,10 @@ impl Page<'_> {
             ];
             rows += &figures_of(row)?;
         }
-        Ok(format!("<div class=\"pictures\">{rows}</div>\n"))
+        let up = gallery.up();
+        Ok(format!(
+            "<div class=\"pictures\">{rows}</div>\n<p class=\"soft\">Up in all pictures: {up} of the target's file.</p>\n"
+        ))
     }
 
     fn heat_maps(&self) -> Result<String, RenderError> {
