@@ -4,6 +4,7 @@ mod architecture;
 mod bad_input;
 mod commands;
 mod data;
+mod gate;
 mod landmarks;
 mod real_pair;
 mod regions;

@@ -1,10 +1,12 @@
 //! Options that several commands share.
 
+mod gate;
 mod inputs;
 mod parts;
 mod settings;
 mod view;
 
+pub(crate) use gate::GateArgs;
 pub(crate) use inputs::{read_truth, Inputs, MorphArgs, Morphing, WeldArgs};
 pub(crate) use parts::PartArgs;
 pub(crate) use settings::{InitialArg, SettingsArgs};

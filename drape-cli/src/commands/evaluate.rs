@@ -3,26 +3,41 @@
 use std::path::PathBuf;
 use std::process::ExitCode;
 
+use crate::args::GateArgs;
 use crate::output::say;
-use crate::suite::{self, Manifest, Pool};
+use crate::suite::{self, Pool, RunList};
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
-    /// TOML list of pairs, presets and seeds
-    manifest: PathBuf,
+    /// TOML lists of pairs, presets and seeds
+    #[arg(required = true, value_name = "MANIFEST")]
+    manifests: Vec<PathBuf>,
     /// Folder for results, tables and pictures; what is done in it already is not done again
     #[arg(short, long, value_name = "FOLDER")]
     output: PathBuf,
     /// Runs at a time
     #[arg(long, value_name = "N", default_value_t = 1)]
     jobs: usize,
+    #[command(flatten)]
+    gate: GateArgs,
 }
 
 pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
-    let manifest = Manifest::read(&args.manifest)?;
-    let tasks = manifest.tasks(&args.output)?;
+    let list = RunList::read(&args.manifests)?;
+    args.gate.check(&list)?;
+    let absent = list.absent();
+    if !absent.is_empty() {
+        let names = absent.join(", ");
+        say(&format!(
+            "left out, no data here: {} pairs: {names}\n",
+            absent.len()
+        ))?;
+    }
+    let tasks = list.tasks(&args.output)?;
     let rows = suite::run(&tasks, &args.output, &Pool::new(args.jobs)?)?;
-    finish(&rows, &args.output)
+    let ended = finish(&rows, &args.output)?;
+    let holds = args.gate.judge(&list, &rows)?;
+    Ok(if holds { ended } else { ExitCode::from(1) })
 }
 
 /// Says where the tables are; exit code 1 where a run failed.

@@ -2,8 +2,11 @@
 //!
 //! A process a run means that one that crashes takes no other along, and that each counts its own time and memory.
 
+mod bounds;
 mod manifest;
+mod page;
 mod row;
+mod run_list;
 mod runner;
 mod summary;
 
@@ -12,8 +15,11 @@ use std::path::{Path, PathBuf};
 use anyhow::Context as _;
 use mesh_core::io::write_atomic;
 
+pub(crate) use bounds::{Bounds, Verdict};
 pub(crate) use manifest::Manifest;
+pub(crate) use page::{around_marks, Page};
 pub(crate) use row::Row;
+pub(crate) use run_list::RunList;
 pub(crate) use runner::Pool;
 
 /// The preset that stands for the initial deformation alone.
