@@ -49,7 +49,7 @@ const fn at_most(name: &'static str, share: f64, amount: f64, of: Of) -> Held {
 }
 
 /// Counts of faults have no slack but crossings, of which a few come and go with the last bits. Processors and their load
-/// differ: time has much.
+/// differ, and the same run was seen to take 3.7 and 7.8 CPU-seconds on one machine: time has much.
 const HELD: [Held; 9] = [
     Held {
         name: "q_transfer",
@@ -65,7 +65,7 @@ const HELD: [Held; 9] = [
     at_most("skinny_new", 0.0, 0.0, Of::All),
     at_most("self_intersections_new", 0.05, 2.0, Of::All),
     at_most("landmark_rms", 0.1, 2e-4, Of::All),
-    at_most("cpu_seconds", 1.0, 1.0, Of::All),
+    at_most("cpu_seconds", 1.5, 1.0, Of::All),
 ];
 
 /// The smaller of the mean distances from the result to the target and back: that of the part which both shapes have.
@@ -374,11 +374,11 @@ mod tests {
     #[test]
     fn a_result_may_fall_behind_by_its_slack_and_no_more() {
         let broken = |q, folds, cpu| bounds().compare(&[measured(q, folds, cpu)]).broken;
-        assert!(broken(0.9882, 1.0, 8.9).is_empty());
+        assert!(broken(0.9882, 1.0, 10.9).is_empty());
         for (row, figure, limit) in [
             ((0.9881, 1.0, 4.0), "q_transfer", "0.988180"),
             ((0.99, 2.0, 4.0), "folds", "1.000000"),
-            ((0.99, 0.0, 9.1), "cpu_seconds", "9.000000"),
+            ((0.99, 0.0, 11.1), "cpu_seconds", "11.000000"),
         ] {
             let found = broken(row.0, row.1, row.2);
             let words = found[0].to_string();
