@@ -11,8 +11,9 @@ use crate::ending::{decided_overlap, left_out, repaired};
 use crate::explain::Counted;
 use crate::stages::{DRAPING, REFINING};
 use crate::stand_in::StandIn;
+use crate::start::Start;
 use crate::{
-    initial_deformation, Error, History, InitialShape, Note, Outcome, Pair, Preset, Stages,
+    Error, History, Note, Outcome, Pair, Preset, Stages,
 };
 
 /// Iterations on a dense source itself, after its stand-in was draped.
@@ -88,20 +89,22 @@ impl Draping {
         let stand_in = is_dense.then(|| stages.time("stand-in", || StandIn::new(&pair)));
         let stand_in = stand_in.transpose()?;
         let draped_pair = stand_in.as_ref().map_or(&pair, |s| &s.pair);
-        let InitialShape {
-            positions: initial,
-            notes: assumed,
-        } = stages.time("initial deformation", || {
-            initial_deformation(draped_pair, preset.initial)
-        })?;
-        notes.extend(assumed);
         let first_regions = match &stand_in {
             Some(stand_in) => stand_in.regions(&regions),
             None => regions.clone(),
         };
+        let Start { shape, overlap } = stages.time("initial deformation", || {
+            Start::choose(draped_pair, &preset, &first_regions)
+        })?;
+        let initial = shape.positions;
+        notes.extend(shape.notes);
+        let config = DrapeConfig {
+            overlap,
+            ..preset.drape.clone()
+        };
         let drape = stages.time_with_parts(DRAPING, |parts| {
             parts.time("set-up", || {
-                set_up(draped_pair, preset.drape.clone(), &initial, &first_regions)
+                set_up(draped_pair, config, &initial, &first_regions)
             })
         })?;
         let mut draping = Self {
@@ -400,7 +403,7 @@ impl Draping {
 }
 
 /// The drape of a pair at its start.
-fn set_up(
+pub(crate) fn set_up(
     pair: &Pair,
     config: DrapeConfig,
     initial: &Positions,

@@ -47,6 +47,7 @@ mod similarity;
 mod source;
 mod stages;
 mod stand_in;
+mod start;
 mod target;
 mod transfer;
 

@@ -66,7 +66,7 @@ impl Preset {
     fn of_drape(name: &str, drape: DrapeConfig) -> Self {
         Self {
             name: name.to_owned(),
-            initial: InitialMethod::Standard,
+            initial: InitialMethod::Best,
             drape,
         }
     }

@@ -29,14 +29,23 @@ impl StandIn {
         );
         pair.source.rest().len() > DENSE
             && moves_vertices
-            && preset.initial == InitialMethod::Standard
+            && matches!(
+                preset.initial,
+                InitialMethod::Best | InitialMethod::Standard
+            )
     }
 
+    /// The stand-in that a dense source is draped by.
     pub(crate) fn new(pair: &Pair) -> Result<Self, Error> {
+        Self::with_vertices(pair, N_VERTICES)
+    }
+
+    /// A stand-in of about `n` vertices; of all of them where the source has no more.
+    pub(crate) fn with_vertices(pair: &Pair, n: usize) -> Result<Self, Error> {
         let source = &pair.source;
         let marked = pair.landmarks.iter().flat_map(|l| l.source.vertices);
         let marked: Vec<VertexId> = marked.collect();
-        let proxy = Proxy::new(source.triangulation(), source.rest(), N_VERTICES, &marked);
+        let proxy = Proxy::new(source.triangulation(), source.rest(), n, &marked);
         let rows = 0..proxy.vertices().len() as u32;
         let weld = Weld {
             soup: proxy.soup().clone(),
@@ -95,6 +104,11 @@ impl StandIn {
                 .map(|&v| regions.rigid[v])
                 .collect::<VertexData<bool>>(),
         }
+    }
+
+    /// Where the vertices of the stand-in are in a shape of the source.
+    pub(crate) fn pick(&self, x: &Positions) -> Positions {
+        self.proxy.vertices().iter().map(|&v| x[v]).collect()
     }
 
     /// The source as the stand-in at `x` carries it.

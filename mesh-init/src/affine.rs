@@ -38,6 +38,8 @@ pub enum SimilarityPrior {
     /// Few or nearly coplanar landmarks leave an axis of the map to their noise, and limbs that turn flatten the body
     /// they belong to: both show in landmarks that the others fail to predict.
     LeaveOneOut,
+    /// All the way: the best similarity.
+    Full,
 }
 
 /// How much of an affine map the landmarks determined.
@@ -91,6 +93,7 @@ pub fn fit_affine(pairs: &[PointPair], frames: FramePair, prior: SimilarityPrior
     let unit = frames.to_unit(pairs);
     let map = match prior {
         SimilarityPrior::None => UnitMap::fit(&Moments::of(&unit), 0.0),
+        SimilarityPrior::Full => UnitMap::fit(&Moments::of(&unit), f64::INFINITY),
         SimilarityPrior::LeaveOneOut => UnitMap::fit(&Moments::of(&unit), best_prior(&unit)),
     };
     let (matrix, translation) = frames.with_units(&map);

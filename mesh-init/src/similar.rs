@@ -180,7 +180,7 @@ fn mean_side(triangulation: &Triangulation, x: &Positions) -> f64 {
     sides.sum::<f64>() / (3 * triangulation.len()).max(1) as f64
 }
 
-fn diagonal(values: impl Iterator<Item = f64>) -> CsrMatrix<f64> {
+pub(crate) fn diagonal(values: impl Iterator<Item = f64>) -> CsrMatrix<f64> {
     let values: Vec<f64> = values.collect();
     let rows: Vec<usize> = (0..values.len()).collect();
     let matrix =

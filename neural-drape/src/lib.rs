@@ -66,6 +66,7 @@ mod schedule;
 mod setting;
 mod state;
 mod studies;
+mod trial;
 mod vertices;
 mod warp;
 

@@ -1,0 +1,153 @@
+//! How far a place is from every landmark along its surface: where it is on the body, however the body stands.
+
+use mesh_core::{Landmark, Point3, Positions, Triangulation, VertexId};
+use mesh_operators::geodesic_distance_unfolded;
+use rayon::prelude::*;
+
+use super::graph::SampleGraph;
+
+/// Landmarks nearer than this share of the longest side count alike.
+const NEAR: f64 = 0.1;
+/// The same where ratios of lengths are carried from landmarks to places.
+const NEAR_RATIO: f64 = 0.02;
+/// Ratios of lengths beyond this, up or down, are those of a path through a crack or a touch.
+const LARGEST_RATIO: f64 = 5.0;
+/// How much the median ratio counts beside those of landmarks at one longest side.
+const MEDIAN_WEIGHT: f64 = 0.5;
+/// A distance that is off by more than this, in longest sides, counts no more: the surfaces are joined otherwise there.
+const LARGEST_MISFIT: f32 = 0.5;
+
+/// Squared misfits of every vertex of a source with every sample of a target, in squared longest sides of the target:
+/// `m(v, t) = Σₖ wₖ(v) (ĝₖ(v) − gₖ(t))²`
+///
+/// gₖ(t) is the distance along the target from sample t to landmark k. What it should be, ĝₖ(v), is the distance from v to
+/// k along the source, times how much longer ways to k are on the target: a mean of that ratio over the other landmarks,
+/// the nearer to v the more. Near landmarks count most, `wₖ ~ (ĝₖ + NEAR)⁻²`, normalised to sum to 1. Without a landmark
+/// all is 0.
+pub(super) struct Misfits {
+    n_samples: usize,
+    rows: Vec<f32>,
+}
+
+impl Misfits {
+    pub(super) fn new(
+        triangulation: &Triangulation,
+        rest: &Positions,
+        landmarks: &[Landmark],
+        graph: &SampleGraph,
+        size: f64,
+    ) -> Self {
+        let n_samples = graph.points.len();
+        let marks: Vec<VertexId> = landmarks.iter().map(|l| l.source.main_vertex()).collect();
+        let places: Vec<Point3> = landmarks.iter().map(|l| l.target).collect();
+        let on_source = marks
+            .par_iter()
+            .map(|&v| geodesic_distance_unfolded(triangulation, rest, &[v]).into_vec());
+        let on_target = places.par_iter().map(|p| graph.distances(p));
+        let ways = Ways {
+            on_source: on_source.collect(),
+            on_target: on_target.collect(),
+            size,
+        };
+        let ratios = Ratios::new(&ways, &marks, &places, graph);
+        let found = |t: usize| ways.on_target.iter().map(move |d| (d[t] / size) as f32);
+        let found: Vec<f32> = (0..n_samples).flat_map(found).collect();
+        let rows = (0..rest.len()).into_par_iter().flat_map_iter(|v| {
+            let expected = ratios.expected(&ways, v);
+            let found = &found;
+            (0..n_samples).map(move |t| {
+                let n = expected.len();
+                misfit(&expected, &found[t * n..(t + 1) * n])
+            })
+        });
+        Self {
+            rows: rows.collect(),
+            n_samples,
+        }
+    }
+
+    /// Of vertex `v` with each sample.
+    pub(super) fn of(&self, v: usize) -> &[f32] {
+        &self.rows[v * self.n_samples..(v + 1) * self.n_samples]
+    }
+}
+
+/// Distances along both shapes from each landmark.
+struct Ways {
+    on_source: Vec<Vec<f64>>,
+    on_target: Vec<Vec<f64>>,
+    /// The longest side of the target.
+    size: f64,
+}
+
+/// How much longer a way is on the target.
+struct Ratios {
+    /// From one landmark (row) to another (column), as a logarithm; none where no way leads.
+    between: Vec<Vec<Option<f64>>>,
+    /// The logarithm of the middle one.
+    median: f64,
+}
+
+impl Ratios {
+    fn new(ways: &Ways, marks: &[VertexId], places: &[Point3], graph: &SampleGraph) -> Self {
+        let samples: Vec<Option<usize>> = places.iter().map(|p| graph.nearest(p)).collect();
+        let ratio = |i: usize, j: usize| {
+            let (on_source, on_target) = (
+                ways.on_source[j][marks[i].index()],
+                ways.on_target[j][samples[i]?],
+            );
+            let ratio = on_target / on_source;
+            let is_way = i != j && ratio.is_finite() && ratio > 0.0;
+            is_way.then(|| ratio.clamp(1.0 / LARGEST_RATIO, LARGEST_RATIO).ln())
+        };
+        let n = marks.len();
+        let between: Vec<Vec<Option<f64>>> = (0..n)
+            .map(|i| (0..n).map(|j| ratio(i, j)).collect())
+            .collect();
+        let mut all: Vec<f64> = between.iter().flatten().flatten().copied().collect();
+        all.sort_by(f64::total_cmp);
+        Self {
+            median: all.get(all.len() / 2).copied().unwrap_or(0.0),
+            between,
+        }
+    }
+
+    /// What the distances of vertex `v` to each landmark should be on the target, in longest sides, and how much each
+    /// counts, summing to 1 where any does.
+    fn expected(&self, ways: &Ways, v: usize) -> Vec<(f32, f32)> {
+        let distance = |k: usize| ways.on_source[k][v] * self.median.exp() / ways.size;
+        let n = self.between.len();
+        let nearness: Vec<f64> = (0..n)
+            .map(|k| (distance(k) + NEAR_RATIO).powi(-2))
+            .collect();
+        let of_landmark = |k: usize| {
+            let (mut sum, mut total) = (self.median * MEDIAN_WEIGHT, MEDIAN_WEIGHT);
+            for (i, near) in nearness.iter().enumerate() {
+                if let Some(ratio) = self.between[i][k] {
+                    sum += near * ratio;
+                    total += near;
+                }
+            }
+            let length = ways.on_source[k][v] * (sum / total).exp() / ways.size;
+            if length.is_finite() {
+                (length as f32, (length + NEAR).powi(-2) as f32)
+            } else {
+                (0.0, 0.0)
+            }
+        };
+        let mut expected: Vec<(f32, f32)> = (0..n).map(of_landmark).collect();
+        let total: f32 = expected.iter().map(|e| e.1).sum();
+        if total > 0.0 {
+            expected.iter_mut().for_each(|e| e.1 /= total);
+        }
+        expected
+    }
+}
+
+fn misfit(expected: &[(f32, f32)], found: &[f32]) -> f32 {
+    let of_landmark = |(&(length, weight), found): (&(f32, f32), &f32)| {
+        // A sample that no way leads to is infinitely far.
+        weight * (length - found).abs().min(LARGEST_MISFIT).powi(2)
+    };
+    expected.iter().zip(found).map(of_landmark).sum()
+}

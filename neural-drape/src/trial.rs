@@ -1,0 +1,38 @@
+//! Settings for a short run that tells what a start is worth.
+
+use crate::{DrapeConfig, LearningRate, ParametrizationConfig, Stage, VerticesConfig};
+
+/// Iterations of a trial, of all its stages together.
+const N_ITERATIONS: usize = 150;
+/// The largest step.
+const STEP: f64 = 2e-2;
+/// Samples on each side.
+const N_SAMPLES: usize = 1000;
+
+impl DrapeConfig {
+    /// This run in short, on explicit vertices and without its last stage: what it comes to on a stand-in of a thousand
+    /// vertices tells which start, or which setting, is worth a whole run.
+    #[must_use]
+    pub fn trial(&self) -> Self {
+        let n: usize = self.n_iterations().max(1);
+        let stages = self.stages.iter().map(|stage| Stage {
+            n_iterations: (stage.n_iterations * N_ITERATIONS / n).max(1),
+            ..*stage
+        });
+        let mut config = Self {
+            stages: stages.collect(),
+            parametrization: ParametrizationConfig::Vertices(VerticesConfig::standard()),
+            learning_rate: LearningRate {
+                peak: STEP,
+                warm_up: 0,
+                decay: 0.3,
+            },
+            repair: false,
+            ..self.clone()
+        };
+        config.sampling.n_samples = N_SAMPLES;
+        config.sampling.double_every = None;
+        config.sampling.max_samples = N_SAMPLES;
+        config
+    }
+}
