@@ -1,0 +1,158 @@
+//! Individuals: a plan with proportions and a pose.
+
+use mesh_core::sampling::SeededRng;
+use mesh_core::{Positions, Triangulation};
+use mesh_metrics::{self_intersections, triangle_qualities, FOLD_COSINE, SKINNY_QUALITY};
+
+use crate::cage::Cage;
+use crate::plan::{Body, Plan};
+use crate::proportions::Proportions;
+use crate::template::smooth;
+
+/// How far individuals differ from the template.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Dial {
+    /// Largest turn of a joint, in degrees, 0..=120. A joint that cannot turn so far turns less.
+    pub angle: f64,
+    /// Largest ratio of a length to the template's, and of the template's to it, 1..=3. Girths differ less.
+    pub ratio: f64,
+}
+
+impl Dial {
+    /// The middle of the dial: half of the largest angle, and the geometric mean of the ratios.
+    pub const MIDDLE: Self = Self {
+        angle: 60.0,
+        ratio: 1.75,
+    };
+}
+
+/// The angles of all joints, in degrees: 0 throughout at rest.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Pose(Vec<f64>);
+
+/// A creature: a plan with proportions and a pose.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Individual {
+    plan: Plan,
+    proportions: Proportions,
+    pose: Pose,
+}
+
+/// So many draws are looked at before the last is eased.
+const N_DRAWS: usize = 12;
+/// What is left of proportions and pose each time that they are eased.
+const EASING: f64 = 0.8;
+
+impl Individual {
+    /// The template of a plan: its proportions are 1, its joints at rest.
+    pub fn template(plan: Plan) -> Self {
+        Self::at_rest(plan, Proportions::TEMPLATE)
+    }
+
+    /// An individual with its joints at rest.
+    pub fn at_rest(plan: Plan, proportions: Proportions) -> Self {
+        let n = plan.body(&proportions).skeleton.n_angles();
+        Self {
+            plan,
+            proportions,
+            pose: Pose(vec![0.0; n]),
+        }
+    }
+
+    /// A random individual of a seed; the same on every machine.
+    ///
+    /// Proportions are even in the logarithm, angles even between the limits of their joints times `angle / 120`; then all
+    /// are enlarged until one angle meets its limit. Drawn again until the surface is sound: it passes nowhere through
+    /// itself, no two neighbouring triangles fold onto each other, and none is skinny. If twelve draws are not, the last
+    /// is eased towards the template until it is.
+    ///
+    /// # Panics
+    /// If the dial is not within its ranges.
+    pub fn drawn(plan: Plan, seed: u64, dial: Dial) -> Self {
+        assert!((0.0..=120.0).contains(&dial.angle), "angles are 0 to 120");
+        assert!((1.0..=3.0).contains(&dial.ratio), "ratios are 1 to 3");
+        let mut rng = SeededRng::new(seed);
+        let mut individual = Self::draw(plan, dial, &mut rng);
+        for _ in 1..N_DRAWS {
+            if individual.is_sound() {
+                return individual;
+            }
+            individual = Self::draw(plan, dial, &mut rng);
+        }
+        while !individual.is_sound() {
+            individual = individual.eased();
+        }
+        individual
+    }
+
+    fn draw(plan: Plan, dial: Dial, rng: &mut SeededRng) -> Self {
+        let proportions = Proportions::drawn(dial.ratio, rng);
+        let skeleton = plan.body(&proportions).skeleton;
+        let shares: Vec<f64> = skeleton
+            .freedoms()
+            .map(|_| 2.0 * rng.uniform() - 1.0)
+            .collect();
+        let largest = shares.iter().fold(0.0, |m: f64, s| m.max(s.abs()));
+        let angle = |(freedom, share): (&crate::skeleton::Freedom, f64)| {
+            let [low, high] = freedom.degrees;
+            let middle = 0.5 * (low + high);
+            (middle + (high - middle) * share / largest) * dial.angle / 120.0
+        };
+        let pose = skeleton.freedoms().zip(shares).map(angle).collect();
+        Self {
+            plan,
+            proportions,
+            pose: Pose(pose),
+        }
+    }
+
+    fn eased(&self) -> Self {
+        Self {
+            plan: self.plan,
+            proportions: self.proportions.tempered(EASING),
+            pose: Pose(self.pose.0.iter().map(|angle| angle * EASING).collect()),
+        }
+    }
+
+    /// What kind of creature it is.
+    pub fn plan(&self) -> Plan {
+        self.plan
+    }
+
+    /// How it is built.
+    pub fn proportions(&self) -> &Proportions {
+        &self.proportions
+    }
+
+    /// Its control mesh, posed.
+    pub(crate) fn cage(&self) -> Cage {
+        let Body { mut cage, skeleton } = self.plan.body(&self.proportions);
+        cage.positions = skeleton.posed(&cage.positions, &cage.skins, &self.pose.0);
+        cage
+    }
+
+    /// Whether its surface neither passes through itself nor folds, and has no skinny triangle.
+    pub(crate) fn is_sound(&self) -> bool {
+        let Ok((mesh, x)) = smooth(&self.cage(), 1).into_halfedge() else {
+            return false;
+        };
+        let triangulation = Triangulation::new(&mesh, &x);
+        let is_skinny = |q: &f64| *q < SKINNY_QUALITY;
+        !triangle_qualities(&triangulation, &x).iter().any(is_skinny)
+            && !is_folded(&triangulation, &x)
+            && self_intersections(&triangulation, &x).is_empty()
+    }
+}
+
+fn is_folded(triangulation: &Triangulation, x: &Positions) -> bool {
+    let normals: Vec<_> = triangulation
+        .corners(x)
+        .map(mesh_core::measure::triangle_normal)
+        .collect();
+    triangulation
+        .interior_edges()
+        .any(|edge| match edge.triangles.map(|t| normals[t]) {
+            [Some(n), Some(m)] => n.dot(&m) < FOLD_COSINE,
+            _ => true,
+        })
+}
