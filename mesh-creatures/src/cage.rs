@@ -55,6 +55,8 @@ pub(crate) struct Mark {
     /// The vertices of the vertex, edge or face whose middle it is.
     pub(crate) element: Vec<u32>,
     pub(crate) part: usize,
+    /// Whether it is the end of something.
+    pub(crate) is_tip: bool,
 }
 
 /// An elliptic ring across a tube.
@@ -86,12 +88,12 @@ impl Section {
         }
     }
 
-    /// The control points of a ring of `n`.
+    /// The control points of a ring of `n`, the first on the first axis or half a step from it.
     ///
     /// A closed cubic B-spline over `n` even points of a circle has its knots at `(2 + cos 2π/n) / 3` of the radius.
-    fn ring(&self, n: usize) -> Vec<Point3> {
+    fn ring(&self, n: usize, starts_on_axis: bool) -> Vec<Point3> {
         let step = std::f64::consts::TAU / n as f64;
-        let start = if n >= 8 { 0.0 } else { step / 2.0 };
+        let start = if starts_on_axis { 0.0 } else { step / 2.0 };
         let widening = 3.0 / (2.0 + step.cos());
         let point = |k: usize| {
             let (sin, cos) = (start + step * k as f64).sin_cos();
@@ -99,15 +101,6 @@ impl Section {
         };
         (0..n).map(point).collect()
     }
-}
-
-/// Middle, outward direction and size of a patch of faces.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct PatchFrame {
-    pub(crate) center: Point3,
-    pub(crate) normal: Vector3,
-    /// Mean distance of the boundary from the middle.
-    pub(crate) radius: f64,
 }
 
 impl Cage {
@@ -125,7 +118,7 @@ impl Cage {
     /// Two patches of 2 × 2 quads back to back on one ring of eight, the first of which faces along it.
     pub(crate) fn pillow(&mut self, section: &Section, part: usize) -> [Vec<usize>; 2] {
         let first = self.positions.len() as u32;
-        for p in section.ring(8) {
+        for p in section.ring(8, true) {
             self.add_vertex(p, &section.skin);
         }
         let front = self.add_vertex(section.center, &section.skin);
@@ -163,7 +156,8 @@ impl Cage {
         let loop_ = self.boundary_loop(patch);
         let n = loop_.len();
         let center = middle(loop_.iter().map(|&v| self.positions[v as usize]));
-        let ring = section.ring(n);
+        // A patch of 2 × 2 has a vertex in the middle of each side, a strip has none at its ends.
+        let ring = section.ring(n, patch.len() == 4 && n == 8);
         let positions = &self.positions;
         let agreement = |shift: usize| -> f64 {
             let pair = |k: usize| {
@@ -228,19 +222,10 @@ impl Cage {
         loop_
     }
 
-    pub(crate) fn frame(&self, patch: &[usize]) -> PatchFrame {
+    /// The middle of the boundary of a patch.
+    pub(crate) fn patch_center(&self, patch: &[usize]) -> Point3 {
         let loop_ = self.boundary_loop(patch);
-        let points: Vec<Point3> = loop_.iter().map(|&v| self.positions[v as usize]).collect();
-        let center = middle(points.iter().copied());
-        let n = points.len();
-        let area: Vector3 = (0..n)
-            .map(|k| (points[k] - center).cross(&(points[(k + 1) % n] - center)))
-            .sum();
-        PatchFrame {
-            center,
-            normal: unit(area),
-            radius: points.iter().map(|p| (p - center).norm()).sum::<f64>() / n as f64,
-        }
+        middle(loop_.iter().map(|&v| self.positions[v as usize]))
     }
 
     pub(crate) fn face_center(&self, f: usize) -> Point3 {
@@ -254,17 +239,42 @@ impl Cage {
 
     /// `faces`, those that lie farthest towards `direction` first.
     pub(crate) fn ranked(&mut self, faces: &[usize], direction: Vector3) -> Vec<usize> {
-        let centers: Vec<Point3> = faces.iter().map(|&f| self.face_center(f)).collect();
+        let along = |cage: &Self, f: usize| cage.face_center(f).coords.dot(&direction);
+        let values: Vec<f64> = faces.iter().map(|&f| -along(self, f)).collect();
+        self.sorted_by(faces, &values)
+    }
+
+    /// The `n` of `faces` whose middles are closest to `point`.
+    pub(crate) fn nearest(&mut self, faces: &[usize], point: &Point3, n: usize) -> Vec<usize> {
+        let away = |f: &usize| (self.face_center(*f) - point).norm();
+        let values: Vec<f64> = faces.iter().map(away).collect();
+        let mut sorted = self.sorted_by(faces, &values);
+        sorted.truncate(n);
+        sorted
+    }
+
+    /// The vertices of the newest ring of `n`, those that lie farthest towards `direction` first.
+    pub(crate) fn newest(&mut self, n: usize, direction: Vector3) -> Vec<usize> {
+        let last = self.positions.len();
+        let rows: Vec<usize> = (last - n..last).collect();
+        let values: Vec<f64> = rows
+            .iter()
+            .map(|&v| -self.positions[v].coords.dot(&direction))
+            .collect();
+        self.sorted_by(&rows, &values)
+    }
+
+    /// `rows` by their values, in the order of the template.
+    fn sorted_by(&mut self, rows: &[usize], values: &[f64]) -> Vec<usize> {
         self.choices.make(|| {
-            let along = |row: usize| centers[row].coords.dot(&direction);
-            let mut rows: Vec<usize> = (0..faces.len()).collect();
-            rows.sort_by(|&f, &g| along(g).total_cmp(&along(f)));
-            rows.into_iter().map(|row| faces[row]).collect()
+            let mut order: Vec<usize> = (0..rows.len()).collect();
+            order.sort_by(|&j, &k| values[j].total_cmp(&values[k]));
+            order.into_iter().map(|k| rows[k]).collect()
         })
     }
 
     /// Names the middle of a patch: its vertex inside, its edge inside, or the middle of its one face.
-    pub(crate) fn mark(&mut self, name: &str, patch: &[usize]) {
+    pub(crate) fn mark(&mut self, name: &str, patch: &[usize], is_tip: bool) {
         let first = self.faces[patch[0]];
         let in_all = |v: &u32| patch.iter().all(|&f| self.faces[f].contains(v));
         let element: Vec<u32> = first.iter().copied().filter(in_all).collect();
@@ -273,6 +283,7 @@ impl Cage {
             name: name.to_owned(),
             element,
             part: self.parts[patch[0]],
+            is_tip,
         });
     }
 

@@ -6,7 +6,7 @@ use mesh_core::measure::{corner_angle, triangle_normal};
 use mesh_core::Point3;
 
 /// Two triangles that an edge lies between must face one way by at least this cosine to be cut the other way.
-const FLAT_COSINE: f64 = 0.8;
+const FLAT_COSINE: f64 = 0.95;
 
 /// An edge is flipped when the angles across it sum to more than this.
 const LARGEST_SUM: f64 = std::f64::consts::PI + 1e-9;

@@ -39,9 +39,11 @@ pub struct Individual {
 }
 
 /// So many draws are looked at before the last is eased.
-const N_DRAWS: usize = 12;
+const N_DRAWS: usize = 24;
 /// What is left of proportions and pose each time that they are eased.
 const EASING: f64 = 0.8;
+/// So often it is eased: what is left then is a thousandth.
+const N_EASINGS: usize = 32;
 
 impl Individual {
     /// The template of a plan: its proportions are 1, its joints at rest.
@@ -61,10 +63,10 @@ impl Individual {
 
     /// A random individual of a seed; the same on every machine.
     ///
-    /// Proportions are even in the logarithm, angles even between the limits of their joints times `angle / 120`; then all
-    /// are enlarged until one angle meets its limit. Drawn again until the surface is sound: it passes nowhere through
-    /// itself, no two neighbouring triangles fold onto each other, and none is skinny. If twelve draws are not, the last
-    /// is eased towards the template until it is.
+    /// Proportions are even in the logarithm; angles lie between the limits of their joints times `angle / 120`, more
+    /// often near the middle, and all are enlarged so far that one meets its limit. Drawn again until the surface is
+    /// sound: it passes nowhere through itself, no two neighbouring triangles fold onto each other, and none is skinny.
+    /// If 24 draws are not, the last is eased towards the template until it is; at worst it is the template.
     ///
     /// # Panics
     /// If the dial is not within its ranges.
@@ -79,10 +81,11 @@ impl Individual {
             }
             individual = Self::draw(plan, dial, &mut rng);
         }
-        while !individual.is_sound() {
-            individual = individual.eased();
-        }
-        individual
+        let eased = std::iter::successors(Some(individual), |i| Some(i.eased()));
+        eased
+            .take(N_EASINGS)
+            .find(|i| i.is_sound())
+            .unwrap_or_else(|| Self::template(plan))
     }
 
     fn draw(plan: Plan, dial: Dial, rng: &mut SeededRng) -> Self {
@@ -90,7 +93,7 @@ impl Individual {
         let skeleton = plan.body(&proportions).skeleton;
         let shares: Vec<f64> = skeleton
             .freedoms()
-            .map(|_| 2.0 * rng.uniform() - 1.0)
+            .map(|_| rng.uniform() + rng.uniform() - 1.0)
             .collect();
         let largest = shares.iter().fold(0.0, |m: f64, s| m.max(s.abs()));
         let angle = |(freedom, share): (&crate::skeleton::Freedom, f64)| {

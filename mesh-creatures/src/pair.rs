@@ -44,8 +44,8 @@ impl Variant {
 pub struct PairConfig {
     /// How often the quads of the control mesh are split in four for the source, 1 or more. 1 gives some 3 000 vertices.
     pub n_splits: usize,
-    /// Vertices of the target, or points of a cloud, over those of the source.
-    pub density: f64,
+    /// Vertices of the target before anything is taken away, or points of a cloud.
+    pub n_target_vertices: usize,
     /// State of the target.
     pub variant: Variant,
     /// Number of landmarks; all there are where there are fewer.
@@ -57,11 +57,11 @@ pub struct PairConfig {
 }
 
 impl PairConfig {
-    /// A mesh half as dense again as the source of some 3 000 vertices, with 16 landmarks.
+    /// A mesh of 8 000 vertices as target of a source of some 3 000, with 16 landmarks.
     pub const fn standard() -> Self {
         Self {
             n_splits: 1,
-            density: 1.5,
+            n_target_vertices: 8_000,
             variant: Variant::Mesh,
             n_landmarks: 16,
             without: Vec::new(),
@@ -106,7 +106,7 @@ impl CreaturePair {
         let template = Template::new(source, config.n_splits);
         let truth = Template::new(target, config.n_splits).soup.positions;
         let mut rng = SeededRng::new(config.seed);
-        let n = (config.density * truth.len() as f64).round() as usize;
+        let n = config.n_target_vertices;
         let mesh = remeshed(&target.cage(), n, &mut rng);
         let (target, normals) = varied(mesh, n, config.variant, &mut rng);
         let landmarks = landmarks(&template, &truth, config);

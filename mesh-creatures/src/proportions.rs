@@ -75,7 +75,7 @@ impl Proportions {
     }
 
     /// Part of the logarithm of a ratio of lengths that each measure may take: girths differ less than lengths.
-    const SHARES: [f64; 12] = [0.5, 0.3, 0.3, 1.0, 0.4, 0.5, 1.0, 1.0, 0.3, 0.5, 1.0, 0.7];
+    const SHARES: [f64; 12] = [0.5, 0.3, 0.25, 1.0, 0.4, 0.5, 0.7, 1.0, 0.25, 0.5, 1.0, 0.7];
 
     /// Draws each measure evenly in the logarithm, lengths between `1 / ratio` and `ratio`.
     pub(crate) fn drawn(ratio: f64, rng: &mut SeededRng) -> Self {
@@ -90,8 +90,18 @@ impl Proportions {
         Self::from_array(values)
     }
 
+    /// Girth of limbs over the template's: short ones are not as stout as long ones.
+    pub(crate) fn limb_stoutness(&self) -> f64 {
+        self.trunk_girth * self.limb_girth * slimmed(self.limb_length)
+    }
+
     /// Each measure to the power of `share`: the template at 0, itself at 1.
     pub(crate) fn tempered(self, share: f64) -> Self {
         Self::from_array(self.to_array().map(|value| value.powf(share)))
     }
+}
+
+/// Girth of a part of this length over its girth at length 1: what is shorter is slimmer, what is longer is stouter.
+pub(crate) fn slimmed(length: f64) -> f64 {
+    length.powf(if length < 1.0 { 0.7 } else { 0.35 })
 }

@@ -160,7 +160,7 @@ fn places(cage: &Cage, order: &[usize]) -> Vec<Place> {
 }
 
 /// The rows of a plan's places: first the farthest from their mean, then always the farthest from all before it, on the
-/// template at rest.
+/// template at rest, where the end of something counts as twice as far.
 fn order(plan: Plan) -> Vec<usize> {
     let cage = Individual::template(plan).cage().refined();
     let place = |mark: &Mark| cage.positions[mark.element[0] as usize];
@@ -168,11 +168,12 @@ fn order(plan: Plan) -> Vec<usize> {
     let mean = middle(points.iter().copied());
     let mut distances: Vec<f64> = points.iter().map(|p| (p - mean).norm()).collect();
     let mut order: Vec<usize> = Vec::with_capacity(points.len());
+    let weight = |k: usize| if cage.marks[k].is_tip { 2.0 } else { 1.0 };
     while order.len() < points.len() {
         let left = (0..points.len()).filter(|k| !order.contains(k));
         // Left and right are equally far but for rounding: then the right, which was marked first.
         let farther = |best: usize, k: usize| {
-            if distances[k] > distances[best] + 1e-9 {
+            if weight(k) * distances[k] > weight(best) * distances[best] + 1e-9 {
                 k
             } else {
                 best

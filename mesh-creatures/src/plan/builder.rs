@@ -3,7 +3,7 @@
 use mesh_core::{Point3, Vector3};
 
 use super::Body;
-use crate::cage::{Cage, Section};
+use crate::cage::{unit, Cage, Section};
 use crate::skeleton::{Freedom, Skeleton};
 use crate::skin::Skin;
 
@@ -96,8 +96,26 @@ impl Builder {
         })
     }
 
+    /// Makes the faces a part of this name.
+    pub(super) fn rename(&mut self, faces: &[usize], part: &str) {
+        let part = self.cage.part(part);
+        faces.iter().for_each(|&face| self.cage.parts[face] = part);
+    }
+
+    /// Names the middle of a patch.
     pub(super) fn mark(&mut self, name: &str, patch: &[usize]) {
-        self.cage.mark(name, patch);
+        self.cage.mark(name, patch, false);
+    }
+
+    /// Names the middle of a patch that is the end of something.
+    pub(super) fn tip(&mut self, name: &str, patch: &[usize]) {
+        self.cage.mark(name, patch, true);
+    }
+
+    /// Names the middle of the two faces of a ring that lie farthest towards `direction`.
+    pub(super) fn mark_top(&mut self, name: &str, ring: &[usize], direction: Vector3) {
+        let pair = self.cage.ranked(ring, direction);
+        self.mark(name, &pair[..2]);
     }
 
     pub(super) fn finished(self) -> Body {
@@ -118,4 +136,21 @@ pub(super) struct Trunk {
 /// A ring across `direction` whose first half axis points to +X.
 pub(super) fn ring(center: Point3, direction: Vector3, radii: [f64; 2], skin: &Skin) -> Section {
     Section::across(center, direction, Vector3::x(), radii, skin)
+}
+
+/// A stop on the way of a tube: middle, half axes, skin.
+pub(super) type Stop = (Point3, [f64; 2], Skin);
+
+/// Rings along a way from `start`, each across the mean of the directions to and from it, with their first half axes
+/// towards `side`.
+pub(super) fn along(start: Point3, stops: &[Stop], side: Vector3) -> Vec<Section> {
+    let mut sections = Vec::with_capacity(stops.len());
+    let mut last = start;
+    for (k, (center, radii, skin)) in stops.iter().enumerate() {
+        let to = unit(center - last);
+        let from = stops.get(k + 1).map_or(to, |next| unit(next.0 - center));
+        sections.push(Section::across(*center, to + from, side, *radii, skin));
+        last = *center;
+    }
+    sections
 }

@@ -1,6 +1,10 @@
 //! Body plans: what a kind of creature is made of.
 
+mod bird;
 mod builder;
+mod head;
+mod insect;
+mod person;
 mod quadruped;
 
 use std::fmt;
@@ -19,6 +23,14 @@ use crate::skeleton::Skeleton;
 pub enum Plan {
     /// An animal with four legs, ears and a tail.
     Quadruped,
+    /// A person with arms, legs and fingers.
+    Person,
+    /// A bird with wings, tail feathers and toes.
+    Bird,
+    /// An insect with six legs and antennae.
+    Insect,
+    /// A head with eyes, ears, nose and an open mouth.
+    Head,
 }
 
 /// The control mesh of an individual at rest, and its skeleton.
@@ -30,18 +42,32 @@ pub(crate) struct Body {
 
 impl Plan {
     /// All there are.
-    pub const ALL: [Self; 1] = [Self::Quadruped];
+    pub const ALL: [Self; 5] = [
+        Self::Quadruped,
+        Self::Person,
+        Self::Bird,
+        Self::Insect,
+        Self::Head,
+    ];
 
     /// Its name, in lower case.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Quadruped => "quadruped",
+            Self::Person => "person",
+            Self::Bird => "bird",
+            Self::Insect => "insect",
+            Self::Head => "head",
         }
     }
 
     pub(crate) fn body(self, proportions: &Proportions) -> Body {
         let build = match self {
             Self::Quadruped => quadruped::build,
+            Self::Person => person::build,
+            Self::Bird => bird::build,
+            Self::Insect => insect::build,
+            Self::Head => head::build,
         };
         let mut template = Builder::default();
         build(&mut template, &Proportions::TEMPLATE);

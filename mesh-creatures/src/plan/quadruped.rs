@@ -3,7 +3,7 @@
 use mesh_core::{Point3, Vector3};
 
 use super::builder::{joint, point, ring, vector, Builder, Side, Trunk};
-use crate::proportions::Proportions;
+use crate::proportions::{slimmed, Proportions};
 use crate::skeleton::about;
 use crate::skin::Skin;
 
@@ -102,7 +102,14 @@ fn tail(b: &mut Builder, f: &Frame, trunk: &Trunk) {
     let first = b.bone(f.hips, at(0.02), &free);
     let second = b.bone(first, at(0.36), &free);
     let third = b.bone(second, at(0.68), &free);
-    let section = |t: f64, r: f64, skin: Skin| ring(at(t), along, [r * f.girth; 2], &skin);
+    let section = |t: f64, r: f64, skin: Skin| {
+        ring(
+            at(t),
+            along,
+            [r * f.girth * slimmed(f.p.tail_length); 2],
+            &skin,
+        )
+    };
     let sections = [
         section(0.08, 0.042, joint(f.hips, first)),
         section(0.36, 0.034, joint(first, second)),
@@ -110,7 +117,7 @@ fn tail(b: &mut Builder, f: &Frame, trunk: &Trunk) {
         section(0.97, 0.019, Skin::of(third)),
     ];
     let rings = b.tube(&patch, &sections, "tail");
-    b.mark("tail tip", &patch);
+    b.tip("tail tip", &patch);
     let top = b.cage.ranked(&rings[1], Vector3::y());
     b.mark("middle of the tail", &top[..2]);
 }
@@ -134,12 +141,12 @@ fn fore_leg(b: &mut Builder, f: &Frame, side: Side) {
     let foot = b.bone(
         lower,
         point(x, 0.15 * h, z),
-        &[about(Vector3::x(), -20.0, 80.0)],
+        &[about(Vector3::x(), -20.0, 50.0)],
     );
     let leg = Leg {
         side,
         name: "fore",
-        girth: f.girth * f.p.limb_girth,
+        girth: f.p.limb_stoutness(),
         foot_length: f.p.foot_length,
     };
     let rows = [
@@ -171,17 +178,17 @@ fn hind_leg(b: &mut Builder, f: &Frame, side: Side) {
     let lower = b.bone(
         upper,
         point(x, 0.55 * h, knee),
-        &[about(Vector3::x(), -15.0, 100.0)],
+        &[about(Vector3::x(), -15.0, 80.0)],
     );
     let foot = b.bone(
         lower,
         point(x, 0.24 * h, hock),
-        &[about(Vector3::x(), -90.0, 20.0)],
+        &[about(Vector3::x(), -60.0, 20.0)],
     );
     let leg = Leg {
         side,
         name: "hind",
-        girth: f.girth * f.p.limb_girth,
+        girth: f.p.limb_stoutness(),
         foot_length: f.p.foot_length,
     };
     let rows = [
@@ -230,7 +237,7 @@ impl Leg<'_> {
         let Side { name, sign, face } = self.side;
         let part = format!("{name} {} leg", self.name);
         let rings = b.tube(&[face], &sections, &part);
-        b.mark(&format!("{name} {} paw", self.name), &[face]);
+        b.tip(&format!("{name} {} paw", self.name), &[face]);
         let outer = b.cage.facing(&rings[1], Vector3::x() * sign);
         let joint = if self.name == "fore" { "elbow" } else { "knee" };
         b.mark(&format!("{name} {joint}"), &[outer]);
@@ -245,11 +252,9 @@ impl Leg<'_> {
 }
 
 fn head(b: &mut Builder, f: &Frame, trunk: &Trunk) {
-    let (g, k) = (f.girth, f.p.head_size);
     let along = vector(0.0, 0.76, 0.65);
     let base = point(0.0, f.height + 0.13, 0.98 * f.half);
-    let length = 0.30 * f.p.neck_length;
-    let at = |t: f64| base + along * (length * t);
+    let at = |t: f64| base + along * (0.30 * t * f.p.neck_length);
     let turn = |down: f64| {
         [
             about(Vector3::x(), -25.0, down),
@@ -258,54 +263,43 @@ fn head(b: &mut Builder, f: &Frame, trunk: &Trunk) {
     };
     let first = b.bone(f.chest, at(0.0), &turn(45.0));
     let second = b.bone(first, at(0.5), &turn(45.0));
-    let top = at(1.0);
-    let head = b.bone(second, top, &turn(35.0));
+    let head = b.bone(second, at(1.0), &turn(35.0));
+    let (g, k) = (f.girth, f.p.head_size);
     let width = 0.4 + 0.6 * k.min(g);
-    let mut sections = vec![
+    let end = [0.066 * width, 0.078 * width];
+    let neck = [
         ring(
             at(0.45),
             along,
             [0.072 * g, 0.088 * g],
             &joint(first, second),
         ),
-        ring(
-            at(0.95),
-            vector(0.0, 0.5, 0.85),
-            [0.066 * width, 0.078 * width],
-            &joint(second, head),
-        ),
+        ring(at(0.95), vector(0.0, 0.5, 0.85), end, &joint(second, head)),
     ];
+    let rings = b.tube(&trunk.end, &neck, "neck");
+    b.mark_top("nape", &rings[1], vector(0.0, 1.0, -1.0));
+    skull(b, f, trunk, (head, at(1.0)));
+}
+
+fn skull(b: &mut Builder, f: &Frame, trunk: &Trunk, (head, top): (usize, Point3)) {
+    let (k, muzzle) = (f.p.head_size, f.p.face_length);
     let forward = vector(0.0, -0.22, 0.97);
-    let muzzle = f.p.face_length;
     let rows = [
         (0.10, 0.060, [0.100, 0.096]),
         (0.19, 0.052, [0.088, 0.080]),
         (0.23 + 0.04 * muzzle, 0.008, [0.047, 0.046]),
         (0.24 + 0.15 * muzzle, 0.004, [0.040, 0.036]),
     ];
-    for (z, y, radii) in rows {
+    let sections = rows.map(|(z, y, radii)| {
         let center = top + (forward * z + Vector3::y() * y) * k;
-        sections.push(ring(center, forward, radii.map(|r| r * k), &Skin::of(head)));
-    }
+        ring(center, forward, radii.map(|r| r * k), &Skin::of(head))
+    });
     let rings = b.tube(&trunk.end, &sections, "head");
-    let neck = b.cage.part("neck");
-    rings[..2]
-        .concat()
-        .iter()
-        .for_each(|&face| b.cage.parts[face] = neck);
-    b.mark("nose", &trunk.end);
-    let throat = b.cage.ranked(&rings[3], -Vector3::y())[..2].to_vec();
-    b.mark("throat", &throat);
-    let nape = b.cage.ranked(&rings[1], vector(0.0, 1.0, -1.0))[..2].to_vec();
-    b.mark("nape", &nape);
-    for side in b.sides(&rings[2], vector(0.6, 1.0, 0.0)) {
-        ear(
-            b,
-            f,
-            head,
-            side,
-            top + (forward * 0.06 + Vector3::y() * 0.12) * k,
-        );
+    b.tip("nose", &trunk.end);
+    b.mark_top("throat", &rings[1], -Vector3::y());
+    let root = top + (forward * 0.06 + Vector3::y() * 0.12) * k;
+    for side in b.sides(&rings[0], vector(0.6, 1.0, 0.0)) {
+        ear(b, f, head, side, root);
     }
 }
 
@@ -327,7 +321,7 @@ fn ear(b: &mut Builder, f: &Frame, head: usize, side: Side, base: Point3) {
         ring(
             root + up * (0.13 * t * f.p.ear_length * k),
             up,
-            radii.map(|r| r * k),
+            radii.map(|r| r * k * slimmed(f.p.ear_length)),
             &skin,
         )
     };
@@ -337,5 +331,5 @@ fn ear(b: &mut Builder, f: &Frame, head: usize, side: Side, base: Point3) {
         section(1.0, [0.013, 0.009], Skin::of(bone)),
     ];
     b.tube(&[face], &sections, &format!("{name} ear"));
-    b.mark(&format!("{name} ear tip"), &[face]);
+    b.tip(&format!("{name} ear tip"), &[face]);
 }
