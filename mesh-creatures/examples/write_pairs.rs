@@ -26,7 +26,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let folder = Path::new(folder).join(format!("{plan}_{angle}_{ratio}_{seed}"));
         fs::create_dir_all(&folder)?;
         fs::write(folder.join("source.obj"), pair.source.to_obj())?;
-        fs::write(folder.join("target.obj"), pair.target_obj())?;
+        fs::write(folder.join("target.obj"), pair.surface_obj())?;
         fs::write(folder.join("truth.ply"), pair.truth_ply())?;
         fs::write(folder.join("landmarks.json"), pair.landmarks_json())?;
     }

@@ -7,6 +7,7 @@ use mesh_metrics::{self_intersections, triangle_qualities, FOLD_COSINE, SKINNY_Q
 use crate::cage::Cage;
 use crate::plan::{Body, Plan};
 use crate::proportions::Proportions;
+use crate::skeleton::Freedom;
 use crate::template::smooth;
 
 /// How far individuals differ from the template.
@@ -29,6 +30,23 @@ impl Dial {
 /// The angles of all joints, in degrees: 0 throughout at rest.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pose(Vec<f64>);
+
+impl Pose {
+    fn drawn(plan: Plan, proportions: &Proportions, angle: f64, rng: &mut SeededRng) -> Self {
+        let skeleton = plan.body(proportions).skeleton;
+        let shares: Vec<f64> = skeleton
+            .freedoms()
+            .map(|_| rng.uniform() + rng.uniform() - 1.0)
+            .collect();
+        let largest = shares.iter().fold(0.0, |m: f64, s| m.max(s.abs()));
+        let turn = |(freedom, share): (&Freedom, f64)| {
+            let [low, high] = freedom.degrees;
+            let middle = 0.5 * (low + high);
+            (middle + (high - middle) * share / largest) * angle / 120.0
+        };
+        Self(skeleton.freedoms().zip(shares).map(turn).collect())
+    }
+}
 
 /// A creature: a plan with proportions and a pose.
 #[derive(Clone, Debug, PartialEq)]
@@ -61,6 +79,21 @@ impl Individual {
         }
     }
 
+    /// An individual of these proportions in a random pose of a seed, as [`Self::drawn`] draws poses, but whether it is
+    /// sound or not.
+    ///
+    /// # Panics
+    /// If the angle is not 0 to 120.
+    pub fn posed(plan: Plan, proportions: Proportions, angle: f64, seed: u64) -> Self {
+        assert!((0.0..=120.0).contains(&angle), "angles are 0 to 120");
+        let pose = Pose::drawn(plan, &proportions, angle, &mut SeededRng::new(seed));
+        Self {
+            plan,
+            proportions,
+            pose,
+        }
+    }
+
     /// A random individual of a seed; the same on every machine.
     ///
     /// Proportions are even in the logarithm; angles lie between the limits of their joints times `angle / 120`, more
@@ -90,22 +123,11 @@ impl Individual {
 
     fn draw(plan: Plan, dial: Dial, rng: &mut SeededRng) -> Self {
         let proportions = Proportions::drawn(dial.ratio, rng);
-        let skeleton = plan.body(&proportions).skeleton;
-        let shares: Vec<f64> = skeleton
-            .freedoms()
-            .map(|_| rng.uniform() + rng.uniform() - 1.0)
-            .collect();
-        let largest = shares.iter().fold(0.0, |m: f64, s| m.max(s.abs()));
-        let angle = |(freedom, share): (&crate::skeleton::Freedom, f64)| {
-            let [low, high] = freedom.degrees;
-            let middle = 0.5 * (low + high);
-            (middle + (high - middle) * share / largest) * dial.angle / 120.0
-        };
-        let pose = skeleton.freedoms().zip(shares).map(angle).collect();
+        let pose = Pose::drawn(plan, &proportions, dial.angle, rng);
         Self {
             plan,
             proportions,
-            pose: Pose(pose),
+            pose,
         }
     }
 

@@ -4,7 +4,7 @@
 //! | to | call |
 //! |---|---|
 //! | choose a kind of creature | [`Plan`] |
-//! | draw or make an individual | [`Individual::drawn`], [`Individual::at_rest`], [`Proportions`] |
+//! | draw or make an individual | [`Individual::drawn`], [`Individual::at_rest`], [`Individual::posed`], [`Proportions`] |
 //! | get its quads, with texture coordinates, parts and named places | [`Template::new`] |
 //! | get source, target, truth and landmarks | [`CreaturePair::new`] |
 //!
@@ -28,7 +28,7 @@ mod subdivision;
 mod template;
 
 pub use individual::{Dial, Individual, Pose};
-pub use pair::{CreaturePair, PairConfig, TrueLandmark, Variant};
+pub use pair::{CreaturePair, PairConfig, TrueLandmark, UnknownVariant, Variant};
 pub use plan::{Plan, UnknownPlan};
 pub use proportions::Proportions;
 pub use template::{Place, Template};

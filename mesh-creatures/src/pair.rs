@@ -1,6 +1,7 @@
 //! Pairs: a template at rest, and another individual's surface in other triangles.
 
-use std::fmt::Write as _;
+use std::fmt::{self, Write as _};
+use std::str::FromStr;
 
 use mesh_core::measure::triangle_area;
 use mesh_core::sampling::{SeededRng, TriangleSampler};
@@ -36,6 +37,33 @@ impl Variant {
             Self::Cracked => "cracked",
             Self::HalfScan => "half-scan",
         }
+    }
+}
+
+impl fmt::Display for Variant {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.name())
+    }
+}
+
+/// A name that no state of a target has.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct UnknownVariant;
+
+impl fmt::Display for UnknownVariant {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("use mesh, cloud, cracked or half-scan")
+    }
+}
+
+impl std::error::Error for UnknownVariant {}
+
+impl FromStr for Variant {
+    type Err = UnknownVariant;
+
+    fn from_str(name: &str) -> Result<Self, UnknownVariant> {
+        let named = Self::ALL.into_iter().find(|variant| variant.name() == name);
+        named.ok_or(UnknownVariant)
     }
 }
 
@@ -77,6 +105,8 @@ pub struct CreaturePair {
     pub source: Template,
     /// The target; without faces for a cloud.
     pub target: PolygonSoup,
+    /// The closed surface that the target was made from: the target itself, if that is a mesh.
+    pub surface: PolygonSoup,
     /// A normal for each vertex of a cloud.
     pub normals: Option<Vec<Vector3>>,
     /// The true place of each vertex of the source, on the smooth surface that the target is an image of.
@@ -107,12 +137,13 @@ impl CreaturePair {
         let truth = Template::new(target, config.n_splits).soup.positions;
         let mut rng = SeededRng::new(config.seed);
         let n = config.n_target_vertices;
-        let mesh = remeshed(&target.cage(), n, &mut rng);
-        let (target, normals) = varied(mesh, n, config.variant, &mut rng);
+        let surface = remeshed(&target.cage(), n, &mut rng);
+        let (target, normals) = varied(&surface, n, config.variant, &mut rng);
         let landmarks = landmarks(&template, &truth, config);
         Self {
             source: template,
             target,
+            surface,
             normals,
             truth,
             landmarks,
@@ -135,12 +166,12 @@ impl CreaturePair {
         ply(&self.target, self.normals.as_deref())
     }
 
-    /// The target as an OBJ file.
-    pub fn target_obj(&self) -> String {
+    /// The closed surface that the target was made from, as an OBJ file.
+    pub fn surface_obj(&self) -> String {
         let mut obj =
             String::from("# A creature built in code: another individual, in other triangles\n");
-        write_positions(&mut obj, &self.target.positions);
-        for face in &self.target.faces {
+        write_positions(&mut obj, &self.surface.positions);
+        for face in &self.surface.faces {
             let corners = face.iter().map(|v| format!(" {}", v + 1));
             let _ = writeln!(obj, "f{}", corners.collect::<String>());
         }
@@ -173,15 +204,15 @@ fn landmarks(template: &Template, truth: &[Point3], config: &PairConfig) -> Vec<
 const CRACKS: f64 = 5e-4;
 
 fn varied(
-    mesh: PolygonSoup,
+    mesh: &PolygonSoup,
     n: usize,
     variant: Variant,
     rng: &mut SeededRng,
 ) -> (PolygonSoup, Option<Vec<Vector3>>) {
     match variant {
-        Variant::Mesh => (mesh, None),
+        Variant::Mesh => (mesh.clone(), None),
         Variant::Cloud => {
-            let (positions, normals) = cloud(&mesh, n, rng);
+            let (positions, normals) = cloud(mesh, n, rng);
             (
                 PolygonSoup {
                     positions,
@@ -190,8 +221,8 @@ fn varied(
                 Some(normals),
             )
         }
-        Variant::Cracked => (cracked(&mesh, rng), None),
-        Variant::HalfScan => (seen(&mesh, Vector3::new(0.8, 0.3, 0.5)), None),
+        Variant::Cracked => (cracked(mesh, rng), None),
+        Variant::HalfScan => (seen(mesh, Vector3::new(0.8, 0.3, 0.5)), None),
     }
 }
 

@@ -3,13 +3,18 @@
 use std::path::PathBuf;
 use std::process::ExitCode;
 
+use super::bench;
 use crate::output::say;
 use crate::suite::{self, Manifest, Pool};
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
     /// TOML list of pairs, presets and seeds
-    manifest: PathBuf,
+    #[arg(required_unless_present = "family")]
+    manifest: Option<PathBuf>,
+    /// Pairs built in code in place of a list: the same as `drape bench` with its defaults
+    #[arg(long, value_name = "NAME", conflicts_with = "manifest")]
+    family: Option<Family>,
     /// Folder for results, tables and pictures; what is done in it already is not done again
     #[arg(short, long, value_name = "FOLDER")]
     output: PathBuf,
@@ -18,8 +23,19 @@ pub(crate) struct Args {
     jobs: usize,
 }
 
+/// Pairs built in code.
+#[derive(Clone, Copy, Debug, clap::ValueEnum)]
+enum Family {
+    Creatures,
+}
+
 pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
-    let manifest = Manifest::read(&args.manifest)?;
+    let manifest = match (&args.manifest, args.family) {
+        (Some(path), _) => Manifest::read(path)?,
+        (None, Some(Family::Creatures) | None) => {
+            return bench::run(&bench::Args::with_defaults(&args.output, args.jobs));
+        }
+    };
     let tasks = manifest.tasks(&args.output)?;
     let rows = suite::run(&tasks, &args.output, &Pool::new(args.jobs)?)?;
     finish(&rows, &args.output)

@@ -61,6 +61,19 @@ impl Manifest {
         Self::parse(&text, folder).with_context(|| path.display().to_string())
     }
 
+    /// Every pair once with every preset; files of settings are counted from the current folder.
+    ///
+    /// # Errors
+    /// An unknown preset.
+    pub(crate) fn of_pairs(presets: &[String], pairs: Vec<Pair>) -> anyhow::Result<Self> {
+        let methods = presets.iter().map(|p| method(p.clone(), Path::new("")));
+        Ok(Self {
+            methods: methods.collect::<anyhow::Result<_>>()?,
+            seeds: vec![0],
+            pairs,
+        })
+    }
+
     fn parse(text: &str, folder: &Path) -> anyhow::Result<Self> {
         let file: File = toml::from_str(text).map_err(|error| {
             let before = error

@@ -8,7 +8,7 @@ use super::row::Row;
 use mesh_render::html::{escape, page, section};
 
 /// A column of the page: figure, heading, factor, decimals.
-const COLUMNS: [(&str, &str, f64, usize); 9] = [
+const COLUMNS: [(&str, &str, f64, usize); 10] = [
     ("q_transfer", "Q", 1.0, 4),
     ("dirichlet", "Dirichlet", 1.0, 4),
     ("hausdorff", "Hausdorff e-2", 100.0, 2),
@@ -17,6 +17,7 @@ const COLUMNS: [(&str, &str, f64, usize); 9] = [
     ("truth_mean", "truth e-2", 100.0, 3),
     ("folds", "new folds", 1.0, 0),
     ("skinny_new", "new skinny", 1.0, 0),
+    ("self_intersections_new", "new crossings", 1.0, 0),
     ("cpu_seconds", "CPU-s", 1.0, 1),
 ];
 
