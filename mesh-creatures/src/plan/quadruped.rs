@@ -277,6 +277,7 @@ fn head(b: &mut Builder, f: &Frame, trunk: &Trunk) {
         ring(at(0.95), vector(0.0, 0.5, 0.85), end, &joint(second, head)),
     ];
     let rings = b.tube(&trunk.end, &neck, "neck");
+    b.mark_top("middle of the neck", &rings[0], vector(0.0, 1.0, -1.0));
     b.mark_top("nape", &rings[1], vector(0.0, 1.0, -1.0));
     skull(b, f, trunk, (head, at(1.0)));
 }
@@ -326,9 +327,8 @@ fn ear(b: &mut Builder, f: &Frame, head: usize, side: Side, base: Point3) {
         )
     };
     let sections = [
-        section(0.15, [0.034, 0.020], joint(head, bone)),
-        section(0.55, [0.034, 0.014], Skin::of(bone)),
-        section(1.0, [0.013, 0.009], Skin::of(bone)),
+        section(0.25, [0.036, 0.020], joint(head, bone)),
+        section(1.0, [0.018, 0.011], Skin::of(bone)),
     ];
     b.tube(&[face], &sections, &format!("{name} ear"));
     b.tip(&format!("{name} ear tip"), &[face]);
