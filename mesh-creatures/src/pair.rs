@@ -70,7 +70,8 @@ impl FromStr for Variant {
 /// What is asked of a pair.
 #[derive(Clone, Debug)]
 pub struct PairConfig {
-    /// How often the quads of the control mesh are split in four for the source, 1 or more. 1 gives some 3 000 vertices.
+    /// How often the quads of the control mesh are split in four for the source. 1 gives some 3 000 vertices, 0 some
+    /// 800.
     pub n_splits: usize,
     /// Vertices of the target before anything is taken away, or points of a cloud.
     pub n_target_vertices: usize,

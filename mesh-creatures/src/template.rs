@@ -40,12 +40,9 @@ impl Template {
     /// The surface of `individual`, with the quads of its control mesh split in four `n_splits` times.
     ///
     /// Vertices lie where they end when the control mesh is subdivided for ever, so that all finenesses lie on one smooth
-    /// surface and each has the vertices of the coarser ones, in the same rows.
-    ///
-    /// # Panics
-    /// If `n_splits` is 0: some named places are middles of quads.
+    /// surface and each has the vertices of the coarser ones, in the same rows. Without a split, places that are middles
+    /// of quads or of edges are left out.
     pub fn new(individual: &Individual, n_splits: usize) -> Self {
-        assert!(n_splits > 0, "named places need one split");
         let cage = individual.cage();
         let mut uvs = tiles(cage.faces.len());
         let mut refined = cage;
@@ -156,7 +153,8 @@ fn places(cage: &Cage, order: &[usize]) -> Vec<Place> {
         vertex: cage.marks[k].element[0] as usize,
         part: cage.marks[k].part,
     };
-    order.iter().map(place).collect()
+    let is_vertex = |k: &&usize| cage.marks[**k].element.len() == 1;
+    order.iter().filter(is_vertex).map(place).collect()
 }
 
 /// The rows of a plan's places: first the farthest from their mean, then always the farthest from all before it, on the

@@ -25,11 +25,12 @@ const SEED: u64 = 0;
 /// Few landmarks: none on shoulders and hips.
 const N_LANDMARKS: usize = 12;
 
-/// A dog at rest, a giraffe that walks, and where twelve places of the one are on the other.
+/// A coarse dog at rest, so that the demo is quick, a giraffe that walks, and where twelve places of the one are on the other.
 pub(crate) fn pair() -> CreaturePair {
     let dog = Individual::template(Plan::Quadruped);
     let giraffe = Individual::posed(Plan::Quadruped, GIRAFFE, ANGLE, SEED);
     let config = PairConfig {
+        n_splits: 0,
         n_landmarks: N_LANDMARKS,
         ..PairConfig::standard()
     };

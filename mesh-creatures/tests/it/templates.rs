@@ -4,7 +4,7 @@ use mesh_creatures::{Individual, Plan, Template};
 #[test]
 fn templates_are_closed_quads_of_genus_0_that_turn_outwards() {
     for plan in Plan::ALL {
-        for n_splits in [1, 2] {
+        for n_splits in [0, 1, 2] {
             let template = Template::new(&Individual::template(plan), n_splits);
             assert!(template.soup.faces.iter().all(|f| f.len() == 4), "{plan}");
             let (mesh, x) = template.soup.clone().into_halfedge().unwrap();
