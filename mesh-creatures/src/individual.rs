@@ -13,7 +13,8 @@ use crate::template::smooth;
 /// How far individuals differ from the template.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Dial {
-    /// Largest turn of a joint, in degrees, 0..=120. A joint that cannot turn so far turns less.
+    /// Largest turn of a joint, in degrees, 0..=120; where no joint of a plan can turn by 120°, the same part of what the
+    /// widest can.
     pub angle: f64,
     /// Largest ratio of a length to the template's, and of the template's to it, 1..=3. Girths differ less.
     pub ratio: f64,
@@ -32,20 +33,31 @@ impl Dial {
 pub struct Pose(Vec<f64>);
 
 impl Pose {
+    /// Shares of the limits of all joints, scaled until one turns by `angle`, or by its part of 120° where no joint of
+    /// the plan turns so far; no joint goes beyond its limits.
     fn drawn(plan: Plan, proportions: &Proportions, angle: f64, rng: &mut SeededRng) -> Self {
         let skeleton = plan.body(proportions).skeleton;
         let shares: Vec<f64> = skeleton
             .freedoms()
             .map(|_| rng.uniform() + rng.uniform() - 1.0)
             .collect();
-        let largest = shares.iter().fold(0.0, |m: f64, s| m.max(s.abs()));
-        let turn = |(freedom, share): (&Freedom, f64)| {
+        let turn = |(freedom, share): (&Freedom, &f64)| {
             let [low, high] = freedom.degrees;
-            let middle = 0.5 * (low + high);
-            (middle + (high - middle) * share / largest) * angle / 120.0
+            0.5 * (low + high) + 0.5 * (high - low) * share
         };
-        Self(skeleton.freedoms().zip(shares).map(turn).collect())
+        let turns: Vec<f64> = skeleton.freedoms().zip(&shares).map(turn).collect();
+        let limits = skeleton.freedoms().flat_map(|freedom| freedom.degrees);
+        let [widest, largest] = [largest(limits), largest(turns.iter().copied())];
+        let scale = angle / 120.0 * widest / largest;
+        let clamped = |(freedom, turn): (&Freedom, f64)| {
+            (turn * scale).clamp(freedom.degrees[0], freedom.degrees[1])
+        };
+        Self(skeleton.freedoms().zip(turns).map(clamped).collect())
     }
+}
+
+fn largest(values: impl Iterator<Item = f64>) -> f64 {
+    values.fold(0.0, |largest, value| largest.max(value.abs()))
 }
 
 /// A creature: a plan with proportions and a pose.
@@ -96,10 +108,10 @@ impl Individual {
 
     /// A random individual of a seed; the same on every machine.
     ///
-    /// Proportions are even in the logarithm; angles lie between the limits of their joints times `angle / 120`, more
-    /// often near the middle, and all are enlarged so far that one meets its limit. Drawn again until the surface is
-    /// sound: it passes nowhere through itself, no two neighbouring triangles fold onto each other, and none is skinny.
-    /// If 24 draws are not, the last is eased towards the template until it is; at worst it is the template.
+    /// Proportions are even in the logarithm. Angles lie between the limits of their joints, more often near the middle,
+    /// and are scaled together until the largest is that of the dial. Drawn again until the surface is sound: it passes
+    /// nowhere through itself, no two neighbouring triangles fold onto each other, and none is skinny. If 24 draws are
+    /// not, the last is eased towards the template until it is; at worst it is the template.
     ///
     /// # Panics
     /// If the dial is not within its ranges.
@@ -180,4 +192,36 @@ fn is_folded(triangulation: &Triangulation, x: &Positions) -> bool {
             [Some(n), Some(m)] => n.dot(&m) < FOLD_COSINE,
             _ => true,
         })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_widest_joints_turn_by_the_angle_of_the_dial() {
+        for plan in [Plan::Quadruped, Plan::Person] {
+            for seed in 0..5 {
+                let one = Individual::posed(plan, Proportions::TEMPLATE, 50.0, seed);
+                let turned = largest(one.pose.0.iter().copied());
+                assert!((turned - 50.0).abs() < 1e-9, "{plan} {seed}: {turned}");
+            }
+        }
+    }
+
+    #[test]
+    fn no_joint_goes_beyond_its_limits() {
+        for plan in Plan::ALL {
+            let dial = Dial {
+                angle: 120.0,
+                ratio: 1.0,
+            };
+            let one = Individual::draw(plan, dial, &mut SeededRng::new(1));
+            let skeleton = plan.body(&one.proportions).skeleton;
+            for (freedom, turn) in skeleton.freedoms().zip(&one.pose.0) {
+                let [low, high] = freedom.degrees;
+                assert!((low..=high).contains(turn), "{plan}: {turn}");
+            }
+        }
+    }
 }

@@ -19,7 +19,7 @@ const GIRAFFE: Proportions = Proportions {
 };
 
 /// Largest turn of one of its joints, in degrees.
-const ANGLE: f64 = 60.0;
+const ANGLE: f64 = 36.0;
 /// The seed of its pose.
 const SEED: u64 = 0;
 /// Few landmarks: none on shoulders and hips.
