@@ -10,7 +10,7 @@
 
 mod args;
 mod commands;
-mod demo;
+mod creatures;
 mod inspection;
 mod output;
 mod profile;

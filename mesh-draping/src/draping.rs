@@ -12,9 +12,7 @@ use crate::explain::Counted;
 use crate::stages::{DRAPING, REFINING};
 use crate::stand_in::StandIn;
 use crate::start::Start;
-use crate::{
-    Error, History, Note, Outcome, Pair, Preset, Stages,
-};
+use crate::{Error, History, Note, Outcome, Pair, Preset, Stages};
 
 /// Iterations on a dense source itself, after its stand-in was draped.
 const N_REFINING: usize = 60;
@@ -93,15 +91,14 @@ impl Draping {
             Some(stand_in) => stand_in.regions(&regions),
             None => regions.clone(),
         };
-        let Start { shape, overlap } = stages.time("initial deformation", || {
+        let Start {
+            shape,
+            drape: config,
+        } = stages.time("initial deformation", || {
             Start::choose(draped_pair, &preset, &first_regions)
         })?;
         let initial = shape.positions;
         notes.extend(shape.notes);
-        let config = DrapeConfig {
-            overlap,
-            ..preset.drape.clone()
-        };
         let drape = stages.time_with_parts(DRAPING, |parts| {
             parts.time("set-up", || {
                 set_up(draped_pair, config, &initial, &first_regions)

@@ -36,3 +36,25 @@ impl DrapeConfig {
         config
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_trial_has_all_stages_in_short() {
+        let run = DrapeConfig::standard();
+        let trial = run.trial();
+        assert!(trial.check().is_ok());
+        assert_eq!(trial.stages.len(), run.stages.len());
+        assert_eq!(trial.n_iterations(), N_ITERATIONS - 1);
+        for (short, long) in trial.stages.iter().zip(&run.stages) {
+            assert_eq!((short.from, short.to), (long.from, long.to));
+        }
+        let paper = DrapeConfig::paper().trial();
+        assert!(matches!(
+            paper.parametrization,
+            ParametrizationConfig::Vertices(_)
+        ));
+    }
+}

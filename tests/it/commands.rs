@@ -150,7 +150,7 @@ fn the_demo_needs_no_file() {
     for name in [
         "source.obj",
         "target.obj",
-        "truth.obj",
+        "truth.ply",
         "landmarks.json",
         "draped.obj",
         "draped.drape",
@@ -159,7 +159,12 @@ fn the_demo_needs_no_file() {
     ] {
         assert!(place.exists(&format!("shown/{name}")), "{name}");
     }
-    assert!(ended.stdout.contains("from the truth"));
+    let is_beside = |line: &str| line.split_whitespace().eq(["initial", "result"]);
+    let beside = ended.stdout.lines().skip_while(|line| !is_beside(line));
+    let headings = ["Q_transfer", "from the truth", "folded edges", "crossings"];
+    for (line, heading) in beside.skip(1).zip(headings) {
+        assert!(line.starts_with(heading), "{line}");
+    }
     assert!(!ended.stderr.contains("warning"), "{}", ended.stderr);
     let shown = ended
         .stdout

@@ -74,3 +74,77 @@ fn a_manifest_with_a_mistake_is_refused_before_any_run() {
     assert!(ended.stderr.contains("suite.toml") && ended.stderr.contains("best"));
     assert!(!place.exists("runs"));
 }
+
+#[test]
+fn a_bench_of_creatures_tells_how_much_nearer_to_the_truth_results_are() {
+    let place = Workplace::new();
+    let line = "bench --plan head,insect --landmarks 8 --seeds 1 --preset short.toml -o b";
+    let ended = place.drape(line).well();
+    for pair in ["head-60-1.75-8-mesh-0", "insect-60-1.75-8-mesh-0"] {
+        assert!(ended.stdout.contains(pair), "{}", ended.stdout);
+        assert!(place.exists(&format!("b/pairs/{pair}/truth.ply")));
+        assert!(place.exists(&format!("b/{pair}/short-0.png")));
+    }
+    assert!(ended.stdout.contains("mean of insect") && ended.stdout.contains("mean of all"));
+    let rows: serde_json::Value =
+        serde_json::from_str(&place.read("b/bench.json")).expect("the table is JSON");
+    for row in rows.as_array().expect("a list of rows") {
+        let figure = |name: &str| row[name].as_f64().expect("a figure");
+        let gain = figure("truth_initial") / figure("truth");
+        assert!((figure("gain") - gain).abs() < 1e-9);
+        assert!(figure("crossings") >= 0.0 && figure("q_transfer") > 0.0);
+    }
+    assert_eq!(place.read("b/bench.csv").lines().count(), 3);
+    let again = place.drape(line).well();
+    assert!(
+        again.stderr.starts_with("4 runs, 4 done before"),
+        "{}",
+        again.stderr
+    );
+}
+
+#[test]
+fn pairs_of_creatures_are_written_as_files() {
+    let place = Workplace::new();
+    let line = "bench --plan bird --landmarks 0,20 --seeds 1 --variant mesh,cloud --without tail --write pairs";
+    let ended = place.drape(line).well();
+    assert!(
+        ended.stdout.starts_with("4 pairs written"),
+        "{}",
+        ended.stdout
+    );
+    let folder = "pairs/bird-60-1.75-20-cloud-0";
+    for name in [
+        "source.obj",
+        "target.ply",
+        "truth.ply",
+        "landmarks.json",
+        "surface.obj",
+    ] {
+        assert!(place.exists(&format!("{folder}/{name}")), "{name}");
+    }
+    assert!(!place
+        .read(&format!("{folder}/landmarks.json"))
+        .contains("tail tip"));
+    assert!(!place.exists("pairs/bird-60-1.75-0-mesh-0/landmarks.json"));
+}
+
+#[test]
+fn a_bench_with_a_mistake_is_refused_before_any_file_is_written() {
+    let place = Workplace::new();
+    for (options, word) in [
+        ("--angle 150", "--angle"),
+        ("--ratio 0.5", "--ratio"),
+        ("--landmarks 40", "--landmarks"),
+        ("--plan fish", "quadruped"),
+        ("--variant wet", "half-scan"),
+        ("--preset best", "best"),
+    ] {
+        let ended = place.drape(&format!("bench {options} -o b"));
+        assert_eq!(ended.code, Some(2), "{options}");
+        assert!(ended.stderr.contains(word), "{options}: {}", ended.stderr);
+    }
+    assert!(!place.exists("b"));
+    let both = place.drape("evaluate suite.toml --family creatures -o b");
+    assert_eq!(both.code, Some(2));
+}

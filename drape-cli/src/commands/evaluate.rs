@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 use std::process::ExitCode;
 
+use super::bench;
 use crate::args::GateArgs;
 use crate::output::say;
 use crate::suite::{self, Pool, RunList};
@@ -10,8 +11,11 @@ use crate::suite::{self, Pool, RunList};
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
     /// TOML lists of pairs, presets and seeds
-    #[arg(required = true, value_name = "MANIFEST")]
+    #[arg(required_unless_present = "family", value_name = "MANIFEST")]
     manifests: Vec<PathBuf>,
+    /// Pairs built in code beside them: those of `drape bench` with its defaults
+    #[arg(long, value_name = "NAME")]
+    family: Option<Family>,
     /// Folder for results, tables and pictures; what is done in it already is not done again
     #[arg(short, long, value_name = "FOLDER")]
     output: PathBuf,
@@ -22,8 +26,14 @@ pub(crate) struct Args {
     gate: GateArgs,
 }
 
+/// Pairs built in code.
+#[derive(Clone, Copy, Debug, clap::ValueEnum)]
+enum Family {
+    Creatures,
+}
+
 pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
-    let list = RunList::read(&args.manifests)?;
+    let list = args.list()?;
     args.gate.check(&list)?;
     let absent = list.absent();
     if !absent.is_empty() {
@@ -38,6 +48,17 @@ pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let ended = finish(&rows, &args.output)?;
     let holds = args.gate.judge(&list, &rows)?;
     Ok(if holds { ended } else { ExitCode::from(1) })
+}
+
+impl Args {
+    fn list(&self) -> anyhow::Result<RunList> {
+        let mut list = RunList::read(&self.manifests)?;
+        if let Some(Family::Creatures) = self.family {
+            let creatures = bench::Args::with_defaults(&self.output, self.jobs);
+            list.push(creatures.manifest()?)?;
+        }
+        Ok(list)
+    }
 }
 
 /// Says where the tables are; exit code 1 where a run failed.

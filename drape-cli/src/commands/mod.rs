@@ -2,6 +2,7 @@
 
 mod apply;
 mod batch;
+mod bench;
 mod demo;
 mod evaluate;
 mod init;
@@ -34,6 +35,8 @@ pub(crate) enum Command {
     Inspect(inspect::Args),
     /// List the presets, or print the settings of one as TOML
     Presets(presets::Args),
+    /// Drape creatures built in code, whose truth is known, at any difficulty
+    Bench(bench::Args),
     /// Drape one mesh over many targets
     Batch(batch::Args),
     /// Run and judge many pairs with many presets and seeds
@@ -56,6 +59,7 @@ impl Command {
             Self::Metrics(args) => metrics::run(args),
             Self::Inspect(args) => inspect::run(args),
             Self::Presets(args) => presets::run(args),
+            Self::Bench(args) => bench::run(args),
             Self::Batch(args) => batch::run(args),
             Self::Evaluate(args) => evaluate::run(args),
             Self::Studio(args) => studio::run(args),

@@ -6,6 +6,7 @@ use std::process::ExitCode;
 
 use mesh_core::io::write_atomic;
 use mesh_core::Positions;
+use mesh_draping::mesh_metrics::Report;
 use mesh_draping::{Outcome, Stages, Transfer};
 use mesh_render::{Gallery, Image, Page, View, DISTANCE_AT_TOP};
 
@@ -67,6 +68,15 @@ const REPORT_PICTURE: usize = 440;
 const PNG_PICTURE: usize = 420;
 
 pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
+    let figures = drape_files(args)?.figures();
+    Ok(args
+        .require
+        .as_ref()
+        .map_or(ExitCode::SUCCESS, |r| r.verdict(&figures)))
+}
+
+/// Drapes, writes and tells all that was asked for.
+pub(super) fn drape_files(args: &Args) -> anyhow::Result<Done<'_>> {
     let watch = Stopwatch::start();
     let mut stages = args.profile.stages();
     check_outputs(args)?;
@@ -112,11 +122,7 @@ pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
     };
     stages.time("writing", || done.write())?;
     done.tell(&watch, &stages)?;
-    let figures = done.figures();
-    Ok(args
-        .require
-        .as_ref()
-        .map_or(ExitCode::SUCCESS, |r| r.verdict(&figures)))
+    Ok(done)
 }
 
 /// Drapes and shows it.
@@ -156,7 +162,7 @@ fn check_outputs(args: &Args) -> anyhow::Result<()> {
 }
 
 /// A finished run and what it was asked for.
-struct Done<'a> {
+pub(super) struct Done<'a> {
     args: &'a Args,
     truth: Option<Positions>,
     warnings: Vec<String>,
@@ -192,6 +198,13 @@ impl Done<'_> {
         let mut figures = self.outcome.report.figures();
         figures.extend(self.usage.figures());
         figures
+    }
+
+    /// What the judge says of the initial deformation and of the result.
+    pub(super) fn reports(&self) -> anyhow::Result<[Report; 2]> {
+        let run = &self.outcome;
+        let initial = run.pair.judge(&run.initial, self.truth.as_ref())?;
+        Ok([initial, run.report.clone()])
     }
 
     /// Source, target, initial deformation, result and distances, a row for each view.

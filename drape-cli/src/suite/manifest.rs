@@ -89,6 +89,33 @@ impl Manifest {
         Ok(manifest)
     }
 
+    /// Every pair once with every preset; files of settings are counted from the current folder; `section` is where they stand
+    /// on a page of results.
+    ///
+    /// # Errors
+    /// An unknown preset.
+    pub(crate) fn of_pairs(
+        presets: &[String],
+        section: &str,
+        pairs: Vec<Pair>,
+    ) -> anyhow::Result<Self> {
+        let methods = presets.iter().map(|p| method(p.clone(), Path::new("")));
+        Ok(Self {
+            methods: methods.collect::<anyhow::Result<_>>()?,
+            seeds: vec![0],
+            pairs: pairs
+                .into_iter()
+                .map(|pair| Listed {
+                    pair,
+                    section: section.to_owned(),
+                    is_partial: false,
+                })
+                .collect(),
+            absent: Vec::new(),
+            has_data: false,
+        })
+    }
+
     pub(super) fn parse(text: &str, folder: &Path, data: Option<PathBuf>) -> anyhow::Result<Self> {
         let file: File = toml::from_str(text).map_err(|error| {
             let before = error

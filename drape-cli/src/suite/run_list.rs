@@ -31,6 +31,17 @@ impl RunList {
         Ok(Self(manifests))
     }
 
+    /// One more manifest, behind the others.
+    ///
+    /// # Errors
+    /// It has a pair whose name another has.
+    pub(crate) fn push(&mut self, manifest: Manifest) -> anyhow::Result<()> {
+        let mut manifests = std::mem::take(&mut self.0);
+        manifests.push(manifest);
+        *self = Self::new(manifests)?;
+        Ok(())
+    }
+
     /// The runs, manifest by manifest and pair by pair; their files go into a folder for each pair.
     pub(crate) fn tasks(&self, folder: &Path) -> anyhow::Result<Vec<Task>> {
         let tasks = self.0.iter().map(|manifest| manifest.tasks(folder));

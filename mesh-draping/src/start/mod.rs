@@ -6,7 +6,7 @@ use mesh_core::{Positions, UnitFrame};
 use mesh_init::{
     fit_affine, guide, point_pairs, FramePair, GuideConfig, GuideInput, PointPair, SimilarityPrior,
 };
-use neural_drape::{OverlapMode, Regions};
+use neural_drape::{DrapeConfig, Regions};
 use rayon::prelude::*;
 
 use crate::stand_in::StandIn;
@@ -21,11 +21,12 @@ const ENOUGH_TO_TURN: usize = 3;
 /// deformation by landmarks is known to keep proportions.
 const CLEARLY_BETTER: f64 = 0.9;
 
-/// Where a drape starts, and what it leaves out.
+/// Where a drape starts, and with which settings it goes on from there.
 pub(crate) struct Start {
     pub(crate) shape: InitialShape,
-    /// What the settings ask for; both shapes whole where they leave that open and the trials say so.
-    pub(crate) overlap: OverlapMode,
+    /// Those of the preset; where these leave open what lies beyond, and the trials say that nothing does, both shapes are
+    /// whole.
+    pub(crate) drape: DrapeConfig,
 }
 
 impl Start {
@@ -35,62 +36,71 @@ impl Start {
     /// As [`initial_deformation`]; or no trial came to an end.
     pub(crate) fn choose(pair: &Pair, preset: &Preset, regions: &Regions) -> Result<Self, Error> {
         let first = initial_deformation(pair, preset.initial)?;
-        let asked = preset.drape.overlap;
         if preset.initial != InitialMethod::Best {
             return Ok(Self {
                 shape: first,
-                overlap: asked,
+                drape: preset.drape.clone(),
             });
         }
+        // What cannot be tried is passed over: the first start needs no trial.
+        let tried = Self::tried(pair, preset, regions, &first);
+        Ok(tried.unwrap_or_else(|_| Self {
+            shape: first,
+            drape: preset.drape.clone(),
+        }))
+    }
+
+    /// The best of several starts, `first` among them.
+    fn tried(
+        pair: &Pair,
+        preset: &Preset,
+        regions: &Regions,
+        first: &InitialShape,
+    ) -> Result<Self, Error> {
         let stand_in = StandIn::with_vertices(pair, N_VERTICES)?;
-        let starts = starts(pair, &stand_in, &first.positions)?;
+        let starts = starts(pair, &stand_in, &first.positions);
         let regions = stand_in.regions(regions);
-        let trials: Vec<Trial> = starts
+        let trials: Vec<Result<Vec<Trial>, Error>> = starts
             .par_iter()
             .map(|start| Trial::all(&stand_in.pair, preset, &regions, start))
-            .collect::<Result<Vec<_>, Error>>()?
-            .into_iter()
-            .enumerate()
-            .flat_map(|(row, trials)| trials.into_iter().map(move |t| Trial { start: row, ..t }))
             .collect();
-        let best = best(&trials);
-        if std::env::var("G_SHOW").is_ok() {
-            for t in &trials {
-                eprintln!("TRIAL {} {:?} cost {:.4} d {:.4} worst {:.4} left {:.3}", t.start, t.overlap, t.cost(), t.distortion, t.worst, t.left_out);
-            }
-        }
-        let shape = match best.start {
-            0 => first,
-            row => InitialShape {
-                positions: stand_in.carry(&starts[row]),
-                ..first
-            },
+        let mut trials = trials.into_iter();
+        let of_first = trials.next().unwrap_or_else(|| Ok(Vec::new()))?;
+        let of_others: Vec<Trial> = trials.flatten().flatten().collect();
+        let (best, is_first) = best(&of_first, &of_others);
+        let drape = DrapeConfig {
+            overlap: best.overlap,
+            ..preset.drape.clone()
+        };
+        let positions = if is_first {
+            first.positions.clone()
+        } else {
+            stand_in.carry(&best.positions)
         };
         Ok(Self {
-            shape,
-            overlap: best.overlap,
+            shape: InitialShape {
+                positions,
+                notes: first.notes.clone(),
+            },
+            drape,
         })
     }
 }
 
-/// The first trial, unless others are clearly better.
-fn best(trials: &[Trial]) -> &Trial {
-    let least = trials
-        .iter()
-        .min_by(|a, b| a.cost().total_cmp(&b.cost()))
-        .unwrap_or(&trials[0]);
-    if least.cost() < CLEARLY_BETTER * trials[0].cost() {
-        least
-    } else {
-        &trials[0]
+/// The best trial from the first start unless one of the others is clearly better, and whether it is.
+fn best<'t>(of_first: &'t [Trial], of_others: &'t [Trial]) -> (&'t Trial, bool) {
+    let best_of = |trials: &'t [Trial]| trials.iter().min_by(|a, b| a.cost().total_cmp(&b.cost()));
+    let first = best_of(of_first).unwrap_or(&of_first[0]);
+    match best_of(of_others) {
+        Some(other) if other.cost() < CLEARLY_BETTER * first.cost() => (other, false),
+        _ => (first, true),
     }
 }
 
 /// Shapes of the stand-in to start from: that of the landmarks alone, then those that are led along the surfaces.
-fn starts(pair: &Pair, stand_in: &StandIn, first: &Positions) -> Result<Vec<Positions>, Error> {
-    let placed = similar(pair, first);
-    let rest = stand_in.pick(&placed);
-    let guided = [GuideConfig::stiff(), GuideConfig::soft()]
+fn starts(pair: &Pair, stand_in: &StandIn, first: &Positions) -> Vec<Positions> {
+    let rest = stand_in.pick(&similar(pair, first));
+    let guided: Vec<Option<Positions>> = [GuideConfig::stiff(), GuideConfig::soft()]
         .par_iter()
         .map(|config| {
             let input = GuideInput {
@@ -99,12 +109,13 @@ fn starts(pair: &Pair, stand_in: &StandIn, first: &Positions) -> Result<Vec<Posi
                 landmarks: &stand_in.pair.landmarks,
                 target: pair.target.draped_over().as_ref(),
             };
-            guide(input, config)
+            guide(input, config).ok()
         })
-        .collect::<Result<Vec<Positions>, _>>()?;
-    Ok(std::iter::once(stand_in.pick(first))
+        .collect();
+    let guided = guided.into_iter().flatten();
+    std::iter::once(stand_in.pick(first))
         .chain(guided)
-        .collect())
+        .collect()
 }
 
 /// The source turned, moved and scaled to its landmarks, or, where they are too few, to the shape `first`.

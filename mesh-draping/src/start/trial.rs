@@ -2,6 +2,7 @@
 
 use mesh_core::sampling::SeededRng;
 use mesh_core::{Point3, Positions, TriangleBvh, VertexId};
+use mesh_loss::Overlap;
 use mesh_metrics::{dirichlet_unit_area, HAUSDORFF_WEIGHT};
 use neural_drape::{Drape, OverlapMode, Regions};
 
@@ -16,18 +17,20 @@ const WORST: f64 = 0.01;
 const LEFT_OUT: f64 = 2.0;
 
 /// What a short drape from a start came to.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Trial {
-    /// The row of the start.
-    pub(super) start: usize,
+    /// Where the vertices of the stand-in came to.
+    pub(super) positions: Positions,
     /// What was left out.
     pub(super) overlap: OverlapMode,
     /// Dirichlet energy of the map less that of an isometry: 0 at best.
-    pub(super) distortion: f64,
+    distortion: f64,
     /// Mean of the worst distances, the larger of both ways, in longest sides.
-    pub(super) worst: f64,
+    worst: f64,
+    /// Whether anything was taken as lying beyond the other shape.
+    is_any_left_out: bool,
     /// Shares of both shapes that were left out, summed.
-    pub(super) left_out: f64,
+    left_out: f64,
 }
 
 impl Trial {
@@ -41,8 +44,9 @@ impl Trial {
     ) -> Result<Vec<Self>, Error> {
         let asked = preset.drape.overlap;
         let first = Self::run(pair, preset, regions, start, asked)?;
+        let is_open = asked == OverlapMode::Auto && first.is_any_left_out;
         let mut trials = vec![first];
-        if asked == OverlapMode::Auto && first.left_out > 0.0 {
+        if is_open {
             trials.push(Self::run(pair, preset, regions, start, OverlapMode::Full)?);
         }
         Ok(trials)
@@ -72,11 +76,12 @@ impl Trial {
         let triangulation = pair.source.triangulation();
         let energy = dirichlet_unit_area(triangulation, pair.source.rest(), &x);
         Ok(Self {
-            start: 0,
+            is_any_left_out: drape.overlap() != Overlap::default() || drape.is_mesh_part_left_out(),
             overlap,
             distortion: energy - 1.0,
             worst: worst_mean(to_target).max(worst_mean(to_mesh)) / size,
             left_out: mesh_left_out + target_left_out,
+            positions: x,
         })
     }
 }

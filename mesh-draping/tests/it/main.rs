@@ -4,5 +4,6 @@ mod background;
 mod interactive;
 mod parts;
 mod run;
+mod starts;
 mod support;
 mod targets;

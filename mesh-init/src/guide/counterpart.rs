@@ -66,7 +66,11 @@ impl Shapes<'_> {
             .collect();
         let samples = self.graph.points.iter().zip(&self.graph.normals);
         let samples: Vec<Place> = samples.map(|(p, n)| (unit(p), flat(n))).collect();
-        let is_used: Vec<bool> = self.x.ids().map(|v| self.triangulation.is_used(v)).collect();
+        let is_used: Vec<bool> = self
+            .x
+            .ids()
+            .map(|v| self.triangulation.is_used(v))
+            .collect();
         let is_oriented = self.graph.is_oriented;
         let search = |first: usize| {
             let mut there = Vec::with_capacity(CHUNK);
@@ -74,7 +78,9 @@ impl Shapes<'_> {
             for v in first..(first + CHUNK).min(vertices.len()) {
                 let mut best = NONE_YET;
                 let misfits = self.misfits.of(v).iter();
-                for (t, ((sample, misfit), back)) in samples.iter().zip(misfits).zip(&mut back).enumerate() {
+                for (t, ((sample, misfit), back)) in
+                    samples.iter().zip(misfits).zip(&mut back).enumerate()
+                {
                     let total = cost.of(&vertices[v], sample, *misfit, is_oriented);
                     if total < best.1 {
                         best = (t, total);
@@ -97,7 +103,10 @@ impl Shapes<'_> {
                 }
             }
         }
-        (parts.into_iter().flat_map(|(there, _)| there).collect(), back)
+        (
+            parts.into_iter().flat_map(|(there, _)| there).collect(),
+            back,
+        )
     }
 }
 

@@ -79,7 +79,8 @@ impl Elastic {
             for ((r, d), goal) in right.iter_mut().zip(&delta).zip(goals) {
                 *r += d + goal.point.coords * goal.weight;
             }
-            self.solver.solve_in_place(&mut right, &mut Vec::<Vector3>::new());
+            self.solver
+                .solve_in_place(&mut right, &mut Vec::<Vector3>::new());
             x.iter_mut().zip(right).for_each(|(p, q)| *p = q.into());
         }
         Ok(())

@@ -82,9 +82,7 @@ impl SampleGraph {
 fn neighbours(points: &[Point3], normals: &[Vector3], is_oriented: bool) -> Rows<(u32, f64)> {
     let own = |i: usize| -> Vec<(u32, f64)> {
         let squared = |j: usize| (points[j] - points[i]).norm_squared();
-        let mut near: Vec<(f64, u32)> = (0..points.len())
-            .map(|j| (squared(j), j as u32))
-            .collect();
+        let mut near: Vec<(f64, u32)> = (0..points.len()).map(|j| (squared(j), j as u32)).collect();
         let order = |a: &(f64, u32), b: &(f64, u32)| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1));
         let n = N_CANDIDATES.min(near.len() - 1);
         near.select_nth_unstable_by(n, order);
@@ -139,7 +137,11 @@ mod tests {
     fn no_path_leads_through_a_gap() {
         let mut soup = shapes::open_grid(20, 20);
         let n = soup.positions.len();
-        let above: Vec<Point3> = soup.positions.iter().map(|p| p + Vector3::z() * 0.02).collect();
+        let above: Vec<Point3> = soup
+            .positions
+            .iter()
+            .map(|p| p + Vector3::z() * 0.02)
+            .collect();
         let faces: Vec<Vec<u32>> = soup
             .faces
             .iter()

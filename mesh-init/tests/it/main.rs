@@ -4,6 +4,7 @@ mod adjust;
 mod affine;
 mod arap;
 mod biharmonic;
+mod guide;
 mod initialize;
 mod interactive;
 mod shapes;
