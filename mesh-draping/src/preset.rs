@@ -305,9 +305,9 @@ mod tests {
     #[test]
     fn presets_have_their_own_initial_deformation() {
         let initial = |name: &str| Preset::named(name).unwrap().initial;
-        assert_eq!(initial("standard"), InitialMethod::Standard);
+        assert_eq!(initial("standard"), InitialMethod::Best);
         assert_eq!(initial("paper"), InitialMethod::Paper);
-        assert_eq!(initial("study"), InitialMethod::Standard);
+        assert_eq!(initial("study"), InitialMethod::Best);
         assert_eq!(initial("study-affine-start"), InitialMethod::Affine);
     }
 

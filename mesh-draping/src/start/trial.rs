@@ -29,8 +29,8 @@ pub(super) struct Trial {
     worst: f64,
     /// Whether anything was taken as lying beyond the other shape.
     is_any_left_out: bool,
-    /// Shares of both shapes that were left out, summed.
-    left_out: f64,
+    /// Shares of the source and of the target that were left out.
+    left_out: [f64; 2],
 }
 
 impl Trial {
@@ -55,7 +55,8 @@ impl Trial {
     /// What is compared: the norm of which Q_transfer is made, of the worst distances in the place of the largest, and what
     /// leaving out costs.
     pub(super) fn cost(&self) -> f64 {
-        self.distortion.hypot(HAUSDORFF_WEIGHT * self.worst) + LEFT_OUT * self.left_out
+        self.distortion.hypot(HAUSDORFF_WEIGHT * self.worst)
+            + LEFT_OUT * self.left_out.iter().sum::<f64>()
     }
 
     fn run(
@@ -80,7 +81,7 @@ impl Trial {
             overlap,
             distortion: energy - 1.0,
             worst: worst_mean(to_target).max(worst_mean(to_mesh)) / size,
-            left_out: mesh_left_out + target_left_out,
+            left_out: [mesh_left_out, target_left_out],
             positions: x,
         })
     }
@@ -100,7 +101,7 @@ fn to_target(pair: &Pair, drape: &Drape, x: &Positions) -> (Vec<f64>, f64) {
     let exceeds = drape.overlap().mesh_exceeds;
     let places = triangulation.triangles().iter().zip(&hits);
     let counted = places
-        .filter(|(t, hit)| !is_left_out(t) && !(exceeds && target.is_on_boundary(&hit.location)))
+        .filter(|(t, hit)| !(is_left_out(t) || exceeds && target.is_on_boundary(&hit.location)))
         .map(|(_, hit)| hit.distance_squared.sqrt());
     let counted: Vec<f64> = counted.collect();
     let share = 1.0 - counted.len() as f64 / middles.len().max(1) as f64;
