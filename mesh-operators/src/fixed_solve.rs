@@ -72,8 +72,9 @@ impl FixedSolve {
         }
         let solver =
             SpdSolver::new(&CsrMatrix::from(&free_block)).map_err(|error| match error {
+                // Of an indefinite block the solver may name the row past the last.
                 SolveError::NotPositiveDefinite { row } => SolveError::NotPositiveDefinite {
-                    row: free[row].index(),
+                    row: free.get(row).or(free.last()).map_or(row, |v| v.index()),
                 },
                 other => other,
             })?;

@@ -145,6 +145,8 @@ fn a_bench_with_a_mistake_is_refused_before_any_file_is_written() {
         assert!(ended.stderr.contains(word), "{options}: {}", ended.stderr);
     }
     assert!(!place.exists("b"));
-    let both = place.drape("evaluate suite.toml --family creatures -o b");
-    assert_eq!(both.code, Some(2));
+    let absent = place.drape("evaluate absent.toml --family creatures -o b");
+    assert_eq!(absent.code, Some(2));
+    assert!(absent.stderr.contains("absent.toml"), "{}", absent.stderr);
+    assert!(!place.exists("b"));
 }

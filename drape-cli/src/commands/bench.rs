@@ -69,7 +69,7 @@ pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
         ))?;
         return Ok(ExitCode::SUCCESS);
     }
-    let manifest = args.manifest()?;
+    let manifest = args.manifest([INITIAL.to_owned()])?;
     let rows = suite::run(
         &manifest.tasks(&args.output)?,
         &args.output,
@@ -103,10 +103,12 @@ impl Args {
         }
     }
 
-    /// All cases as pairs of a suite, whose files are written.
-    pub(super) fn manifest(&self) -> anyhow::Result<Manifest> {
-        let presets = self.preset.iter().cloned();
-        let presets: Vec<String> = presets.chain([INITIAL.to_owned()]).collect();
+    /// All cases as pairs of a suite, whose files are written; `also` names presets beside those that are asked for.
+    pub(super) fn manifest(
+        &self,
+        also: impl IntoIterator<Item = String>,
+    ) -> anyhow::Result<Manifest> {
+        let presets: Vec<String> = self.preset.iter().cloned().chain(also).collect();
         // Checked before any file is written.
         Manifest::of_pairs(&presets, SECTION, Vec::new())?;
         let (grid, folder) = (self.grid()?, self.output.join("pairs"));

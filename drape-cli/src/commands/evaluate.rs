@@ -55,7 +55,7 @@ impl Args {
         let mut list = RunList::read(&self.manifests)?;
         if let Some(Family::Creatures) = self.family {
             let creatures = bench::Args::with_defaults(&self.output, self.jobs);
-            list.push(creatures.manifest()?)?;
+            list.push(creatures.manifest([])?)?;
         }
         Ok(list)
     }

@@ -20,6 +20,9 @@ const ENOUGH_TO_TURN: usize = 3;
 /// Another start is taken where it comes to less than this share of what the first comes to: among equals, the plain
 /// deformation by landmarks is known to keep proportions.
 const CLEARLY_BETTER: f64 = 0.9;
+/// A start whose Dirichlet energy comes to more than this above that of the first is not taken: it is nearer because it is
+/// stretched.
+const MORE_DISTORTED: f64 = 0.05;
 
 /// Where a drape starts, and with which settings it goes on from there.
 pub(crate) struct Start {
@@ -91,7 +94,9 @@ impl Start {
 fn best<'t>(of_first: &'t [Trial], of_others: &'t [Trial]) -> (&'t Trial, bool) {
     let best_of = |trials: &'t [Trial]| trials.iter().min_by(|a, b| a.cost().total_cmp(&b.cost()));
     let first = best_of(of_first).unwrap_or(&of_first[0]);
-    match best_of(of_others) {
+    let limit = first.distortion + MORE_DISTORTED;
+    let others = of_others.iter().filter(|t| t.distortion <= limit);
+    match others.min_by(|a, b| a.cost().total_cmp(&b.cost())) {
         Some(other) if other.cost() < CLEARLY_BETTER * first.cost() => (other, false),
         _ => (first, true),
     }

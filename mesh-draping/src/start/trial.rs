@@ -24,7 +24,7 @@ pub(super) struct Trial {
     /// What was left out.
     pub(super) overlap: OverlapMode,
     /// Dirichlet energy of the map less that of an isometry: 0 at best.
-    distortion: f64,
+    pub(super) distortion: f64,
     /// Mean of the worst distances, the larger of both ways, in longest sides.
     worst: f64,
     /// Whether anything was taken as lying beyond the other shape.
