@@ -90,6 +90,11 @@ impl SurfaceMatcher {
         self.attraction = (!is_even).then(|| attraction.clone());
     }
 
+    /// Whether the mesh ends openly anywhere.
+    pub fn has_boundary(&self) -> bool {
+        !self.triangulation.boundary().is_empty()
+    }
+
     /// How much of each surface lies beyond the other, as a share of `n_samples` random places on each: their closest
     /// point is on the other's open boundary, and farther than `distance`.
     pub fn beyond(

@@ -99,7 +99,8 @@ pub enum AngleReference {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum OverlapMode {
-    /// Each that does so by more than a twentieth of its area in the initial shape.
+    /// Each that does so by more than a twentieth of its area in the initial shape. Where neither does, a source that ends
+    /// openly is matched as if it did for the first quarter of the run: only pairs that surely belong together lead it.
     Auto,
     /// Neither: both shapes are whole.
     Full,

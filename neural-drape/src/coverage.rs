@@ -20,8 +20,13 @@ const FAR: f64 = 0.15;
 /// From there the part spreads along the surface to where both are below this.
 const NEAR: f64 = 0.04;
 
-/// [`SamplingConfig::mutual`](mesh_loss::SamplingConfig::mutual), from the start of the run to its end: a scale that is
-/// annealed.
+/// For this share of a run, a mesh that ends openly counts as reaching beyond the target where neither does: only pairs
+/// that surely belong together lead it. Where the initial shape has a mouth that is closed and the target one that is
+/// open, the lower lip is nearest to the upper one of the target, and the sheets behind lips are as near as the lips.
+const CAUTIOUS: f64 = 0.25;
+/// [`SamplingConfig::mutual`](mesh_loss::SamplingConfig::mutual) as long as that lasts.
+const CAUTIOUS_MUTUAL: f64 = 0.4;
+/// The same with a target that is only a part, from the start of the run to its end: a scale that is annealed.
 const MUTUAL: [f64; 2] = [0.8, 0.45];
 
 impl OverlapMode {
@@ -44,10 +49,44 @@ impl OverlapMode {
     }
 }
 
-/// [`SamplingConfig::mutual`](mesh_loss::SamplingConfig::mutual) when a run has come to `progress`, 0..=1.
-pub(crate) fn mutual(progress: f64) -> f64 {
-    let [start, end] = MUTUAL;
-    start + (end - start) * progress
+/// Which pairs count in the course of a run.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Pairing {
+    /// Which parts beyond are left out.
+    pub(crate) overlap: Overlap,
+    n_cautious: usize,
+}
+
+impl Pairing {
+    /// For a mesh that ends openly or not, and a run of `n_iterations`.
+    pub(crate) fn new(
+        mode: OverlapMode,
+        beyond: &Beyond,
+        ends_openly: bool,
+        n_iterations: usize,
+    ) -> Self {
+        let overlap = mode.resolved(beyond);
+        let is_cautious = mode == OverlapMode::Auto && ends_openly && overlap == Overlap::default();
+        let share = if is_cautious { CAUTIOUS } else { 0.0 };
+        Self {
+            overlap,
+            n_cautious: (share * n_iterations as f64) as usize,
+        }
+    }
+
+    /// What the matcher leaves out in an iteration, and its `mutual`; `progress` through the run is 0..=1.
+    pub(crate) fn at(&self, iteration: usize, progress: f64) -> (Overlap, f64) {
+        if iteration < self.n_cautious {
+            let overlap = Overlap {
+                mesh_exceeds: true,
+                ..self.overlap
+            };
+            (overlap, CAUTIOUS_MUTUAL)
+        } else {
+            let [start, end] = MUTUAL;
+            (self.overlap, start + (end - start) * progress)
+        }
+    }
 }
 
 /// A target and the frame of the mesh that is draped over it.
@@ -161,6 +200,27 @@ mod tests {
             *p = Point3::new(p.x, (2.0 * p.y).max(floor), p.z);
         }
         soup
+    }
+
+    #[test]
+    fn open_meshes_are_paired_cautiously_at_first_unless_told() {
+        let whole = Beyond {
+            of_target: 0.0,
+            of_mesh: 0.0,
+        };
+        let strict = |mode: OverlapMode, ends_openly: bool| {
+            let pairing = Pairing::new(mode, &whole, ends_openly, 100);
+            let is_strict = |i: &usize| pairing.at(*i, *i as f64 / 100.0).0.mesh_exceeds;
+            (0..100).filter(is_strict).count()
+        };
+        assert_eq!(strict(OverlapMode::Auto, true), 25);
+        assert_eq!(strict(OverlapMode::Auto, false), 0);
+        assert_eq!(strict(OverlapMode::Full, true), 0);
+        assert_eq!(strict(OverlapMode::TargetPartial, true), 100);
+
+        let part = Pairing::new(OverlapMode::TargetPartial, &whole, true, 100);
+        assert_eq!(part.at(0, 0.0).1, 0.8);
+        assert!((part.at(100, 1.0).1 - 0.45).abs() < 1e-12);
     }
 
     #[test]

@@ -6,7 +6,7 @@ use mesh_core::{Positions, UnitFrame};
 use mesh_init::{
     fit_affine, guide, point_pairs, FramePair, GuideConfig, GuideInput, PointPair, SimilarityPrior,
 };
-use neural_drape::{DrapeConfig, Regions};
+use neural_drape::{DrapeConfig, DrapeError, Regions};
 use rayon::prelude::*;
 
 use crate::stand_in::StandIn;
@@ -63,14 +63,16 @@ impl Start {
         let stand_in = StandIn::with_vertices(pair, N_VERTICES)?;
         let starts = starts(pair, &stand_in, &first.positions);
         let regions = stand_in.regions(regions);
-        let trials: Vec<Result<Vec<Trial>, Error>> = starts
+        let trials: Vec<Result<Trial, Error>> = starts
             .par_iter()
-            .map(|start| Trial::all(&stand_in.pair, preset, &regions, start))
+            .map(|start| Trial::best(&stand_in.pair, preset, &regions, start))
             .collect();
         let mut trials = trials.into_iter();
-        let of_first = trials.next().unwrap_or_else(|| Ok(Vec::new()))?;
-        let of_others: Vec<Trial> = trials.flatten().flatten().collect();
-        let (best, is_first) = best(&of_first, &of_others);
+        let Some(of_first) = trials.next().transpose()? else {
+            return Err(DrapeError::NoArea.into());
+        };
+        let of_others: Vec<Trial> = trials.flatten().collect();
+        let (best, is_first) = best(&of_first, &of_others.iter().collect::<Vec<_>>());
         let drape = DrapeConfig {
             overlap: best.overlap,
             ..preset.drape.clone()
@@ -90,15 +92,14 @@ impl Start {
     }
 }
 
-/// The best trial from the first start unless one of the others is clearly better, and whether it is.
-fn best<'t>(of_first: &'t [Trial], of_others: &'t [Trial]) -> (&'t Trial, bool) {
-    let best_of = |trials: &'t [Trial]| trials.iter().min_by(|a, b| a.cost().total_cmp(&b.cost()));
-    let first = best_of(of_first).unwrap_or(&of_first[0]);
-    let limit = first.distortion + MORE_DISTORTED;
+/// The trial from the first start unless that from one of the others is clearly better, and whether it is. Each start is
+/// given by its own best trial.
+fn best<'t>(of_first: &'t Trial, of_others: &[&'t Trial]) -> (&'t Trial, bool) {
+    let limit = of_first.distortion + MORE_DISTORTED;
     let others = of_others.iter().filter(|t| t.distortion <= limit);
     match others.min_by(|a, b| a.cost().total_cmp(&b.cost())) {
-        Some(other) if other.cost() < CLEARLY_BETTER * first.cost() => (other, false),
-        _ => (first, true),
+        Some(other) if other.cost() < CLEARLY_BETTER * of_first.cost() => (other, false),
+        _ => (of_first, true),
     }
 }
 

@@ -16,6 +16,11 @@ const WORST: f64 = 0.01;
 /// What leaving out a whole shape costs, in the units of the distortion.
 const LEFT_OUT: f64 = 2.0;
 
+/// One trial is clearly better than another where it comes to less than this share of it.
+const CLEARLY: f64 = 0.92;
+/// Costs within this factor of each other are equal.
+const AS_NEAR: f64 = 1.02;
+
 /// What a short drape from a start came to.
 #[derive(Clone, Debug)]
 pub(super) struct Trial {
@@ -34,22 +39,33 @@ pub(super) struct Trial {
 }
 
 impl Trial {
-    /// Drapes the stand-in from `start`; once more as whole shapes where it is left open what lies beyond and something
-    /// was left out.
-    pub(super) fn all(
+    /// Drapes the stand-in from `start`; once more as whole shapes where it is left open what lies beyond, and something
+    /// was left out or the source ends openly, so that its pairs were chosen with caution at first. The better of the two.
+    pub(super) fn best(
         pair: &Pair,
         preset: &Preset,
         regions: &Regions,
         start: &Positions,
-    ) -> Result<Vec<Self>, Error> {
+    ) -> Result<Self, Error> {
         let asked = preset.drape.overlap;
         let first = Self::run(pair, preset, regions, start, asked)?;
-        let is_open = asked == OverlapMode::Auto && first.is_any_left_out;
-        let mut trials = vec![first];
-        if is_open {
-            trials.push(Self::run(pair, preset, regions, start, OverlapMode::Full)?);
+        let ends_openly = !pair.source.triangulation().boundary().is_empty();
+        if asked != OverlapMode::Auto || !(first.is_any_left_out || ends_openly) {
+            return Ok(first);
         }
-        Ok(trials)
+        let whole = Self::run(pair, preset, regions, start, OverlapMode::Full)?;
+        Ok(if whole.is_better_than(&first) {
+            whole
+        } else {
+            first
+        })
+    }
+
+    /// Clearly nearer, or as near and clearly less distorted.
+    fn is_better_than(&self, other: &Self) -> bool {
+        let is_as_near = self.cost() <= AS_NEAR * other.cost();
+        self.cost() < CLEARLY * other.cost()
+            || is_as_near && self.distortion < CLEARLY * other.distortion
     }
 
     /// What is compared: the norm of which Q_transfer is made, of the worst distances in the place of the largest, and what

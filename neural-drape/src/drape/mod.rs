@@ -12,7 +12,7 @@ use mesh_core::{
 use mesh_loss::{Beyond, Matches, Overlap, SurfaceMatcher};
 
 use crate::config::{Descent, DrapeConfig};
-use crate::coverage::{mark_uncovered, mutual, Target, FAR_BEYOND, N_BEYOND};
+use crate::coverage::{mark_uncovered, Pairing, Target, FAR_BEYOND, N_BEYOND};
 use crate::input::check_length;
 use crate::network::NetworkMap;
 use crate::objective::{self, DistanceLoss, StructuralLoss, TermReport};
@@ -47,8 +47,7 @@ pub struct Drape {
     matcher: SurfaceMatcher,
     structure: StructuralLoss,
     beyond: Beyond,
-    /// Which parts beyond are left out.
-    overlap: Overlap,
+    pairing: Pairing,
     triangulation: Arc<Triangulation>,
     rest: Arc<Positions>,
     /// In the unit frame.
@@ -101,7 +100,8 @@ impl Drape {
         let mut matcher = SurfaceMatcher::new(input.triangulation, &initial, input.target, frame);
         let mut beyond = matcher.beyond(&initial, N_BEYOND, FAR_BEYOND, &mut rng);
         let n_iterations = config.stages.iter().map(|s| s.n_iterations).sum();
-        let overlap = config.overlap.resolved(&beyond);
+        let ends_openly = matcher.has_boundary();
+        let pairing = Pairing::new(config.overlap, &beyond, ends_openly, n_iterations);
         let is_uncovered = mark_uncovered(
             input.triangulation,
             &initial,
@@ -123,7 +123,7 @@ impl Drape {
         matcher.set_attraction(guidance.attraction());
         let mut drape = Self {
             beyond,
-            overlap,
+            pairing,
             is_uncovered,
             guidance,
             frame,
@@ -168,13 +168,13 @@ impl Drape {
             self.structure.anchor(&self.triangulation, x);
         }
 
-        let sampling = &self.config.sampling;
-        let sampling = sampling.at(self.iteration, self.overlap, mutual(progress));
+        let (overlap, mutual) = self.pairing.at(self.iteration, progress);
+        let sampling = self.config.sampling.at(self.iteration, overlap, mutual);
         let x = self.parametrization.positions();
         let matches = self
             .matcher
             .resample(x, &sampling, &mut self.rng, &mut self.profile);
-        self.guidance.note(&matches, self.overlap);
+        self.guidance.note(&matches, self.pairing.overlap);
 
         // Eq. 1: L = L_d + λ L_s, the two descended in turn or as one sum.
         let distance = self.add_distance_loss(&matches, &weights);
@@ -206,7 +206,7 @@ impl Drape {
     fn settle(&mut self) -> Result<(), DrapeError> {
         let period = (self.n_iterations / N_FOLLOWS).max(1);
         let is_end = self.is_finished();
-        let follow = if is_end && self.overlap.mesh_exceeds {
+        let follow = if is_end && self.pairing.overlap.mesh_exceeds {
             Follow::End
         } else if is_end {
             Follow::Pieces
@@ -289,7 +289,7 @@ impl Drape {
 
     /// Whether parts of the mesh without a counterpart on the target are left out, beside those beyond its boundary.
     pub fn is_mesh_part_left_out(&self) -> bool {
-        self.overlap.mesh_exceeds || self.is_uncovered.iter().any(|&u| u)
+        self.pairing.overlap.mesh_exceeds || self.is_uncovered.iter().any(|&u| u)
     }
 
     /// How strongly each vertex is attracted: what [`Regions`] say, and 0 where the target has no counterpart.
@@ -299,7 +299,7 @@ impl Drape {
 
     /// Which parts beyond are left out.
     pub fn overlap(&self) -> Overlap {
-        self.overlap
+        self.pairing.overlap
     }
 
     /// Adds dL_d/dx at the present positions (Eq. 2).
