@@ -47,13 +47,13 @@ struct Bend {
 }
 
 fn bend(angle: f64) -> Bend {
-    let (mesh, rest) = limb(10).into_halfedge().unwrap();
+    let (mesh, rest) = limb(10).into_halfedge().expect("a limb is a mesh");
     let truth = rest.map(|p| bent(p, angle));
     let nearest = |place: Point3| -> VertexId {
         let squared = |v: &VertexId| (rest[*v] - place).norm_squared();
         rest.ids()
             .min_by(|a, b| squared(a).total_cmp(&squared(b)))
-            .unwrap()
+            .expect("a limb has vertices")
     };
     let places = [
         [-HALF, 0.0, 0.0],
@@ -69,8 +69,8 @@ fn bend(angle: f64) -> Bend {
     Bend {
         triangulation: Triangulation::new(&mesh, &rest),
         landmarks: marks.map(|v| Landmark::new(v, truth[v])).to_vec(),
-        cloud: PointCloud::new(fine.positions.clone(), None).unwrap(),
-        mesh: TriangleSoup::new(fine).unwrap(),
+        cloud: PointCloud::new(fine.positions.clone(), None).expect("a limb is a cloud"),
+        mesh: TriangleSoup::new(fine).expect("a limb is a surface"),
         rest,
         truth,
     }
@@ -83,7 +83,7 @@ fn guided(bend: &Bend, target: &dyn TargetSurface, config: &GuideConfig) -> Posi
         landmarks: &bend.landmarks,
         target,
     };
-    guide(input, config).unwrap()
+    guide(input, config).expect("a limb can be deformed")
 }
 
 /// An end without a landmark turns to its counterpart, through 120 degrees, over a mesh and over a cloud.
