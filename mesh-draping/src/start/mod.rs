@@ -4,7 +4,7 @@ mod trial;
 
 use mesh_core::{Positions, UnitFrame};
 use mesh_init::{
-    fit_affine, guide, point_pairs, FramePair, GuideConfig, GuideInput, PointPair, SimilarityPrior,
+    fit_affine, guide, point_pairs, FramePair, GuideConfig, GuideInput, SimilarityPrior,
 };
 use neural_drape::{DrapeConfig, DrapeError, Regions};
 use rayon::prelude::*;
@@ -15,8 +15,8 @@ use trial::Trial;
 
 /// Vertices of the stand-in that starts are tried on.
 const N_VERTICES: usize = 1200;
-/// Fewer landmarks do not say how the source is turned.
-const ENOUGH_TO_TURN: usize = 3;
+/// Fewer landmarks do not say how the source is turned, nor where on the body a place is: no start is led by them.
+const ENOUGH_TO_LEAD: usize = 3;
 /// Another start is taken where it comes to less than this share of what the first comes to: among equals, the plain
 /// deformation by landmarks is known to keep proportions.
 const CLEARLY_BETTER: f64 = 0.9;
@@ -105,7 +105,10 @@ fn best<'t>(of_first: &'t Trial, of_others: &[&'t Trial]) -> (&'t Trial, bool) {
 
 /// Shapes of the stand-in to start from: that of the landmarks alone, then those that are led along the surfaces.
 fn starts(pair: &Pair, stand_in: &StandIn, first: &Positions) -> Vec<Positions> {
-    let rest = stand_in.pick(&similar(pair, first));
+    if pair.landmarks.len() < ENOUGH_TO_LEAD {
+        return vec![stand_in.pick(first)];
+    }
+    let rest = stand_in.pick(&similar(pair));
     let guided: Vec<Option<Positions>> = [GuideConfig::stiff(), GuideConfig::soft()]
         .par_iter()
         .map(|config| {
@@ -124,20 +127,14 @@ fn starts(pair: &Pair, stand_in: &StandIn, first: &Positions) -> Vec<Positions> 
         .collect()
 }
 
-/// The source turned, moved and scaled to its landmarks, or, where they are too few, to the shape `first`.
-fn similar(pair: &Pair, first: &Positions) -> Positions {
+/// The source turned, moved and scaled to its landmarks.
+fn similar(pair: &Pair) -> Positions {
     let rest = pair.source.rest();
-    let pairs = if pair.landmarks.len() < ENOUGH_TO_TURN {
-        let both = rest.iter().zip(first);
-        both.map(|(&source, &target)| PointPair { source, target })
-            .collect()
-    } else {
-        point_pairs(&pair.landmarks, rest)
-    };
     let frames = FramePair {
         source: UnitFrame::principal(rest.as_slice()),
         target: pair.target.judged().principal_frame(),
     };
+    let pairs = point_pairs(&pair.landmarks, rest);
     let map = fit_affine(&pairs, frames, SimilarityPrior::Full);
     rest.map(|p| map.apply(p))
 }
