@@ -11,7 +11,7 @@ use crate::{Error, Note, Pair};
 #[serde(rename_all = "lowercase")]
 pub enum InitialMethod {
     /// The best of several starts: that of [`Self::Standard`], and two that are led by distances along the surfaces
-    /// ([`mesh_init::guide`]). Each is tried on a coarse stand-in before the drape begins; to [`initial_deformation`],
+    /// ([`mesh_init::Guide`]). Each is tried on a coarse stand-in before the drape begins; to [`initial_deformation`],
     /// which drapes nothing, the same as [`Self::Standard`].
     Best,
     /// Affine, then rotations and scales spread from the landmarks: least distortion ([`InitConfig::standard`]).
@@ -34,7 +34,7 @@ impl InitialMethod {
 }
 
 /// Fewer landmarks leave the way the source stands open: it is searched.
-const ENOUGH_TO_STAND: usize = 3;
+pub(crate) const ENOUGH_TO_STAND: usize = 3;
 
 /// A source brought to its landmarks.
 #[derive(Clone, Debug, PartialEq)]

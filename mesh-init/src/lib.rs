@@ -7,7 +7,7 @@
 //! | do either again and again while landmarks are dragged | [`InteractiveInit`] |
 //! | fit as much of an affine map as landmarks determine | [`fit_affine`] |
 //! | find how the source stands, without landmarks | [`find_pose`] |
-//! | bring a source into the pose of its target, by where on the body places are | [`guide`] |
+//! | bring a source into the pose of its target, by where on the body places are | [`Guide`] |
 //! | spread displacements smoothly | [`biharmonic_displacement`] |
 //! | spread rotations and scales smoothly | [`SimilarSolver`] |
 //! | deform as rigidly as possible | [`ArapSolver`] |
@@ -38,6 +38,7 @@ mod cells;
 mod config;
 mod deformer;
 mod error;
+mod frames;
 mod guide;
 mod initialize;
 mod interactive;
@@ -50,7 +51,7 @@ pub use arap::{ArapScratch, ArapSolver};
 pub use biharmonic::{biharmonic_displacement, BiharmonicSolver};
 pub use config::{InitConfig, Pinning, Spread};
 pub use error::InitError;
-pub use guide::{guide, GuideConfig, GuideInput};
+pub use guide::{Guide, GuideConfig, GuideInput};
 pub use initialize::{adjust, initialize, point_pairs, InitInput, Initial};
 pub use interactive::InteractiveInit;
 pub use pose::{find_pose, Pose, PoseInput};

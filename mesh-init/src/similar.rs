@@ -1,19 +1,14 @@
 //! Deformation as similar as possible: rotations and scales spread smoothly from the landmarks.
 
-use mesh_core::{Point3, Positions, Triangulation, UnitFrame, Vector3, VertexData, VertexId};
+use mesh_core::{Point3, Positions, Triangulation, UnitFrame, Vector3, VertexId};
 use mesh_operators::{
     cotan_laplacian, multiply, pointwise_laplacian, voronoi_mass, CsrMatrix, FixedSolve,
-    FixedSolveScratch, SolveError, SpdSolver,
+    FixedSolveScratch, SolveError,
 };
-use nalgebra::Matrix3;
-use nalgebra_sparse::CooMatrix;
 
-use crate::cells::Cells;
+use crate::frames::{diagonal, SmoothFrames};
 use crate::reach::held_and_unreached;
-use mesh_core::nearest_rotation;
 
-/// A neighbourhood grows or shrinks at most this much.
-const MAX_SCALE: f64 = 3.0;
 /// A neighbourhood is at least this many mean sides wide, so that its frame is determined.
 const MIN_RADIUS_IN_SIDES: f64 = 1.0;
 
@@ -59,9 +54,7 @@ impl SimilarConfig {
 pub struct SimilarSolver {
     config: SimilarConfig,
     size: f64,
-    cells: Cells,
-    smoother: SpdSolver,
-    rest_squares: Vec<f64>,
+    frames: SmoothFrames,
     bending: CsrMatrix<f64>,
     landmarks: Vec<VertexId>,
     solve: FixedSolve,
@@ -82,17 +75,9 @@ impl SimilarSolver {
         let size = UnitFrame::principal(rest.as_slice()).scale;
         let laplacian = cotan_laplacian(triangulation, rest);
         let mass = voronoi_mass(triangulation, rest);
-        let cells = Cells::new(triangulation, rest);
-
         let radius =
             (config.frame_radius * size).max(MIN_RADIUS_IN_SIDES * mean_side(triangulation, rest));
-        let mean_mass = mass.iter().sum::<f64>() / n.max(1) as f64;
-        let masses = mass
-            .iter()
-            .map(|m| m.max(1e-6 * mean_mass).max(f64::MIN_POSITIVE));
-        let smoother = SpdSolver::new(&(diagonal(masses) + &laplacian * radius.powi(2)))?;
-        let mut rest_squares = cells.rest_squares(n).into_vec();
-        smoother.solve_in_place(&mut rest_squares, &mut Vec::new());
+        let frames = SmoothFrames::new(triangulation, rest, &laplacian, &mass, radius)?;
 
         let bending = pointwise_laplacian(&laplacian, &mass).transpose()
             * (config.bending_length * size).powi(2);
@@ -109,9 +94,7 @@ impl SimilarSolver {
             landmarks: landmarks.to_vec(),
             config,
             size,
-            cells,
-            smoother,
-            rest_squares,
+            frames,
             bending,
         })
     }
@@ -129,7 +112,7 @@ impl SimilarSolver {
         let mut x = guess.clone();
         let mut scratch = FixedSolveScratch::default();
         for _ in 0..self.config.max_steps {
-            let delta = self.cells.transformed_laplacian(&self.frames(&x));
+            let delta = self.frames.turned_laplacian(&x);
             let mut right = multiply(&self.bending, &delta);
             for (r, d) in right.iter_mut().zip(&delta) {
                 *r += d;
@@ -153,24 +136,6 @@ impl SimilarSolver {
         }
         x
     }
-
-    /// Rotation times scale of the neighbourhood of each vertex.
-    fn frames(&self, x: &Positions) -> VertexData<Matrix3<f64>> {
-        let mut covariances = self.cells.covariances(x).into_vec();
-        self.smoother
-            .solve_in_place(&mut covariances, &mut Vec::new());
-        let frame = |(s, &squares): (&Matrix3<f64>, &f64)| {
-            let rotation = nearest_rotation(s);
-            let scale = (rotation.transpose() * s).trace() / squares;
-            let bounded = scale.clamp(1.0 / MAX_SCALE, MAX_SCALE);
-            rotation * if bounded.is_finite() { bounded } else { 1.0 }
-        };
-        covariances
-            .iter()
-            .zip(&self.rest_squares)
-            .map(frame)
-            .collect()
-    }
 }
 
 fn mean_side(triangulation: &Triangulation, x: &Positions) -> f64 {
@@ -178,12 +143,4 @@ fn mean_side(triangulation: &Triangulation, x: &Positions) -> f64 {
         .corners(x)
         .map(|[a, b, c]| (b - a).norm() + (c - b).norm() + (a - c).norm());
     sides.sum::<f64>() / (3 * triangulation.len()).max(1) as f64
-}
-
-pub(crate) fn diagonal(values: impl Iterator<Item = f64>) -> CsrMatrix<f64> {
-    let values: Vec<f64> = values.collect();
-    let rows: Vec<usize> = (0..values.len()).collect();
-    let matrix =
-        CooMatrix::try_from_triplets(values.len(), values.len(), rows.clone(), rows, values);
-    CsrMatrix::from(&matrix.expect("the diagonal lies in the matrix"))
 }

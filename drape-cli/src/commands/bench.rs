@@ -13,31 +13,42 @@ use crate::creatures::{self, BenchRow, Case, Grid, PairFiles, Table};
 use crate::output::say;
 use crate::suite::{self, Manifest, Pair, Pool, INITIAL};
 
+// What is draped where nothing is asked for: the middle of the dial.
+const ANGLES: [f64; 1] = [60.0];
+const RATIOS: [f64; 1] = [1.75];
+const LANDMARKS: [usize; 1] = [16];
+const N_SEEDS: u64 = 2;
+const VARIANTS: [Variant; 1] = [Variant::Mesh];
+
+fn presets() -> [String; 1] {
+    [Preset::standard().name]
+}
+
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
     /// Kinds of creature: quadruped, person, bird, insect, head [default: all]
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     plan: Vec<Plan>,
     /// Largest turn of a joint, in degrees, 0 to 120
-    #[arg(long, value_name = "DEGREES", value_delimiter = ',', default_values_t = [60.0])]
+    #[arg(long, value_name = "DEGREES", value_delimiter = ',', default_values_t = ANGLES)]
     angle: Vec<f64>,
     /// Largest ratio of lengths, 1 to 3
-    #[arg(long, value_name = "RATIOS", value_delimiter = ',', default_values_t = [1.75])]
+    #[arg(long, value_name = "RATIOS", value_delimiter = ',', default_values_t = RATIOS)]
     ratio: Vec<f64>,
     /// Number of landmarks, 0 to 20
-    #[arg(long, value_name = "NUMBERS", value_delimiter = ',', default_values_t = [16])]
+    #[arg(long, value_name = "NUMBERS", value_delimiter = ',', default_values_t = LANDMARKS)]
     landmarks: Vec<usize>,
     /// Parts without landmarks, by name, such as 'tail' or 'left ear'
     #[arg(long, value_name = "PARTS", value_delimiter = ',')]
     without: Vec<String>,
     /// Individuals: 0 to N − 1
-    #[arg(long, value_name = "N", default_value_t = 2)]
+    #[arg(long, value_name = "N", default_value_t = N_SEEDS)]
     seeds: u64,
     /// State of the target: mesh, cloud, cracked, half-scan
-    #[arg(long, value_name = "NAMES", value_delimiter = ',', default_values_t = [Variant::Mesh])]
+    #[arg(long, value_name = "NAMES", value_delimiter = ',', default_values_t = VARIANTS)]
     variant: Vec<Variant>,
     /// Presets, or TOML files of settings
-    #[arg(long, value_name = "NAMES", value_delimiter = ',', default_values_t = [Preset::standard().name])]
+    #[arg(long, value_name = "NAMES", value_delimiter = ',', default_values_t = presets())]
     preset: Vec<String>,
     /// Folder for pairs, results, tables and pictures; what is done in it already is not done again
     #[arg(short, long, value_name = "FOLDER", default_value = "drape-bench")]
@@ -90,13 +101,13 @@ impl Args {
     pub(super) fn with_defaults(output: &Path, jobs: usize) -> Self {
         Self {
             plan: Vec::new(),
-            angle: vec![60.0],
-            ratio: vec![1.75],
-            landmarks: vec![16],
+            angle: ANGLES.to_vec(),
+            ratio: RATIOS.to_vec(),
+            landmarks: LANDMARKS.to_vec(),
             without: Vec::new(),
-            seeds: 2,
-            variant: vec![Variant::Mesh],
-            preset: vec![Preset::standard().name],
+            seeds: N_SEEDS,
+            variant: VARIANTS.to_vec(),
+            preset: presets().to_vec(),
             output: output.to_owned(),
             write: None,
             jobs,

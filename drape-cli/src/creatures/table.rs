@@ -63,12 +63,12 @@ impl BenchRow {
         }
     }
 
+    /// In the order of [`COLUMNS`].
     fn figures(&self) -> [Option<f64>; 8] {
-        let hundredths = |x: Option<f64>| x.map(|x| 100.0 * x);
         [
             self.q_transfer,
-            hundredths(self.truth),
-            hundredths(self.truth_initial),
+            self.truth,
+            self.truth_initial,
             self.gain,
             self.folds,
             self.skinny,
@@ -78,16 +78,16 @@ impl BenchRow {
     }
 }
 
-/// Headings, widths and decimals of the figures.
-const COLUMNS: [(&str, usize, usize); 8] = [
-    ("Q", 7, 4),
-    ("truth e-2", 10, 3),
-    ("initial e-2", 12, 3),
-    ("gain", 6, 2),
-    ("folds", 6, 0),
-    ("skinny", 7, 0),
-    ("crossings", 10, 0),
-    ("CPU-s", 7, 1),
+/// Headings, factors, widths and decimals of the figures.
+const COLUMNS: [(&str, f64, usize, usize); 8] = [
+    ("Q", 1.0, 7, 4),
+    ("truth e-2", 100.0, 10, 3),
+    ("initial e-2", 100.0, 12, 3),
+    ("gain", 1.0, 6, 2),
+    ("folds", 1.0, 6, 0),
+    ("skinny", 1.0, 7, 0),
+    ("crossings", 1.0, 10, 0),
+    ("CPU-s", 1.0, 7, 1),
 ];
 
 /// All rows, for people and for programs.
@@ -105,7 +105,7 @@ impl Table {
             .unwrap_or(0)
             .max(16);
         let mut text = format!("{:width$} {:10}", "pair", "preset");
-        for (heading, w, _) in COLUMNS {
+        for (heading, _, w, _) in COLUMNS {
             let _ = write!(text, " {heading:>w$}");
         }
         text.push('\n');
@@ -147,16 +147,7 @@ impl Table {
                 "{},{},{},{},{},{},{},{}",
                 r.pair, r.plan, r.angle, r.ratio, r.landmarks, r.variant, r.seed, r.preset
             );
-            let figures = [
-                r.q_transfer,
-                r.truth,
-                r.truth_initial,
-                r.gain,
-                r.folds,
-                r.skinny,
-                r.crossings,
-                r.cpu_seconds,
-            ];
+            let figures = row.figures();
             for figure in figures {
                 let _ = write!(
                     csv,
@@ -171,17 +162,18 @@ impl Table {
 }
 
 fn line(figures: [Option<f64>; 8], more_decimals: usize) -> String {
-    let cell = |(figure, (_, width, decimals)): (Option<f64>, (&str, usize, usize))| {
-        let decimals = if decimals == 0 {
-            more_decimals
-        } else {
-            decimals
+    let cell =
+        |(figure, (_, factor, width, decimals)): (Option<f64>, (&str, f64, usize, usize))| {
+            let decimals = if decimals == 0 {
+                more_decimals
+            } else {
+                decimals
+            };
+            let text = figure
+                .map(|x| format!("{:.decimals$}", factor * x))
+                .unwrap_or_default();
+            format!(" {text:>width$}")
         };
-        let text = figure
-            .map(|x| format!("{x:.decimals$}"))
-            .unwrap_or_default();
-        format!(" {text:>width$}")
-    };
     figures.into_iter().zip(COLUMNS).map(cell).collect()
 }
 

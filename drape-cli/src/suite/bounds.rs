@@ -242,7 +242,7 @@ impl Bounds {
     /// The text of a file of bounds.
     pub(crate) fn to_toml(&self) -> String {
         let mut text = String::from(
-            "# The best that each run of docs/gate.toml has reached, written by `drape evaluate --tighten`. A result may be worse\n\
+            "# The best that each run has reached, written by `drape evaluate --tighten`. A result may be worse\n\
              # by a small slack that belongs to each figure. Bounds are tightened by what was gained and never loosened.\n",
         );
         for entry in &self.bound {

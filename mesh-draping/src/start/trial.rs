@@ -1,7 +1,7 @@
 //! A short drape of a stand-in, and what it came to.
 
 use mesh_core::sampling::SeededRng;
-use mesh_core::{Point3, Positions, TriangleBvh, VertexId};
+use mesh_core::{Point3, Positions, SurfacePoint, TriangleBvh};
 use mesh_loss::Overlap;
 use mesh_metrics::{dirichlet_unit_area, HAUSDORFF_WEIGHT};
 use neural_drape::{Drape, OverlapMode, Regions};
@@ -15,8 +15,13 @@ const N_SAMPLES: usize = 4000;
 const WORST: f64 = 0.01;
 /// What leaving out a whole shape costs, in the units of the distortion.
 const LEFT_OUT: f64 = 2.0;
-
-/// One trial is clearly better than another where it comes to less than this share of it.
+/// Another start is taken where it comes to less than this share of what the first comes to: among equals, the plain
+/// deformation by landmarks is known to keep proportions.
+const BETTER_START: f64 = 0.9;
+/// A start whose Dirichlet energy comes to more than this above that of the first is not taken: it is nearer because it is
+/// stretched.
+const MORE_DISTORTED: f64 = 0.05;
+/// Of two trials from one start, one is clearly better where it comes to less than this share of the other.
 const CLEARLY: f64 = 0.92;
 /// Costs within this factor of each other are equal.
 const AS_NEAR: f64 = 1.02;
@@ -29,7 +34,7 @@ pub(super) struct Trial {
     /// What was left out.
     pub(super) overlap: OverlapMode,
     /// Dirichlet energy of the map less that of an isometry: 0 at best.
-    pub(super) distortion: f64,
+    distortion: f64,
     /// Mean of the worst distances, the larger of both ways, in longest sides.
     worst: f64,
     /// Whether anything was taken as lying beyond the other shape.
@@ -54,15 +59,21 @@ impl Trial {
             return Ok(first);
         }
         let whole = Self::run(pair, preset, regions, start, OverlapMode::Full)?;
-        Ok(if whole.is_better_than(&first) {
+        Ok(if whole.is_clearly_better_than(&first) {
             whole
         } else {
             first
         })
     }
 
+    /// Whether the start of this trial is to be taken in the place of the first, whose trial is `first`.
+    pub(super) fn is_better_start_than(&self, first: &Self) -> bool {
+        self.cost() < BETTER_START * first.cost()
+            && self.distortion <= first.distortion + MORE_DISTORTED
+    }
+
     /// Clearly nearer, or as near and clearly less distorted.
-    fn is_better_than(&self, other: &Self) -> bool {
+    fn is_clearly_better_than(&self, other: &Self) -> bool {
         let is_as_near = self.cost() <= AS_NEAR * other.cost();
         self.cost() < CLEARLY * other.cost()
             || is_as_near && self.distortion < CLEARLY * other.distortion
@@ -112,16 +123,13 @@ fn to_target(pair: &Pair, drape: &Drape, x: &Positions) -> (Vec<f64>, f64) {
         .map(|[a, b, c]| Point3::from((a.coords + b.coords + c.coords) / 3.0))
         .collect();
     let attraction = drape.attraction();
-    let is_left_out = |t: &[VertexId; 3]| t.iter().all(|&v| attraction[v] == 0.0);
-    let hits = target.closest_points(&middles);
     let exceeds = drape.overlap().mesh_exceeds;
-    let places = triangulation.triangles().iter().zip(&hits);
-    let counted = places
-        .filter(|(t, hit)| !(is_left_out(t) || exceeds && target.is_on_boundary(&hit.location)))
-        .map(|(_, hit)| hit.distance_squared.sqrt());
-    let counted: Vec<f64> = counted.collect();
-    let share = 1.0 - counted.len() as f64 / middles.len().max(1) as f64;
-    (counted, share)
+    let is_left_out = |row: usize, hit: &SurfacePoint| {
+        let corners = &triangulation.triangles()[row];
+        corners.iter().all(|&v| attraction[v] == 0.0)
+            || exceeds && target.is_on_boundary(&hit.location)
+    };
+    counted(&target.closest_points(&middles), is_left_out)
 }
 
 /// Distances of places of the target from the mesh, and the share of them that was left out.
@@ -132,18 +140,23 @@ fn to_mesh(pair: &Pair, drape: &Drape, x: &Positions) -> (Vec<f64>, f64) {
     let points: Vec<Point3> = samples.iter().map(|s| s.point).collect();
     let bvh = TriangleBvh::new(triangulation.corners(x).collect());
     let exceeds = drape.overlap().target_exceeds;
-    let hits = bvh.closest_points(&points);
-    let is_end = |t: u32| {
-        let corners = triangulation.triangles()[t as usize];
-        corners.iter().any(|&v| triangulation.is_boundary_vertex(v))
+    let is_left_out = |_, hit: &SurfacePoint| {
+        let corners = &triangulation.triangles()[hit.location.row() as usize];
+        exceeds && corners.iter().any(|&v| triangulation.is_boundary_vertex(v))
     };
-    let counted: Vec<f64> = hits
-        .iter()
-        .filter(|hit| !(exceeds && is_end(hit.location.row())))
-        .map(|hit| hit.distance_squared.sqrt())
-        .collect();
-    let share = 1.0 - counted.len() as f64 / points.len().max(1) as f64;
-    (counted, share)
+    counted(&bvh.closest_points(&points), is_left_out)
+}
+
+/// Distances of the places that are not left out, and the share of those that are.
+fn counted(
+    hits: &[SurfacePoint],
+    is_left_out: impl Fn(usize, &SurfacePoint) -> bool,
+) -> (Vec<f64>, f64) {
+    let kept = hits.iter().enumerate();
+    let kept = kept.filter(|(row, hit)| !is_left_out(*row, hit));
+    let distances: Vec<f64> = kept.map(|(_, hit)| hit.distance_squared.sqrt()).collect();
+    let share = 1.0 - distances.len() as f64 / hits.len().max(1) as f64;
+    (distances, share)
 }
 
 /// Mean of the largest distances; 0 of none.

@@ -19,6 +19,8 @@ const LANDMARK_WEIGHT: f64 = 30.0;
 /// Pull of a vertex without a counterpart to where it is, in units of its area over the squared longest side: it makes
 /// the system definite and does nothing else.
 const TETHER: f64 = 1e-9;
+/// Samples of the target.
+const N_SAMPLES: usize = 3000;
 /// Steps to the landmarks alone, before the rest of the surface is drawn.
 const N_FIRST_STEPS: usize = 30;
 
@@ -39,8 +41,6 @@ pub struct GuideInput<'a> {
 /// geometrically; lengths are shares of the longest side of the target.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GuideConfig {
-    /// Samples of the target, ≥ 1.
-    pub n_samples: usize,
     /// How often counterparts are looked for, ≥ 1.
     pub n_rounds: usize,
     /// Steps of the surface towards them in each round.
@@ -63,7 +63,6 @@ impl GuideConfig {
     /// The surface keeps its shape; only the pose is that of the target.
     pub fn stiff() -> Self {
         Self {
-            n_samples: 3000,
             n_rounds: 10,
             n_steps: 4,
             space: [0.1, 1.0],
@@ -108,44 +107,73 @@ impl GuideConfig {
 ///
 /// Parts that turn far, and those without a landmark at their end, turn whole. The target may be a mesh, a soup or a cloud:
 /// distances along it are those of a graph over its samples. Pairs count by how well the way there and back agrees. Without
-/// a landmark only space and normals lead. One position per vertex, in the target's coordinates. The work grows with the
-/// number of vertices times that of samples: it is meant for a stand-in of a thousand ([`mesh_core::Proxy`]).
-///
-/// # Errors
-/// As [`crate::initialize`].
-pub fn guide(input: GuideInput<'_>, config: &GuideConfig) -> Result<Positions, InitError> {
-    check_length(input.triangulation.n_vertices(), input.rest)?;
-    check_landmarks(input.triangulation.n_vertices(), input.landmarks)?;
-    let size = input.target.bounds().longest_side();
-    if size <= 0.0 {
-        return Ok(input.rest.clone());
-    }
-    let graph = SampleGraph::new(input.target, config.n_samples);
-    let (triangulation, rest) = (input.triangulation, input.rest);
-    let misfits = Misfits::new(triangulation, rest, input.landmarks, &graph, size);
-    let mut elastic = Elastic::new(triangulation, rest, size, config)?;
-    let mut x = rest.clone();
-    if !input.landmarks.is_empty() {
-        let nothing = vec![None; x.len()];
-        let goals = goals(&input, &elastic, &x, &nothing, size);
-        elastic.draw(&mut x, &goals, N_FIRST_STEPS)?;
-    }
-    for round in 0..config.n_rounds {
-        let t = round as f64 / (config.n_rounds - 1).max(1) as f64;
-        let shapes = Shapes {
-            triangulation,
-            rest,
-            x: &x,
-            graph: &graph,
-            misfits: &misfits,
+/// a landmark only space and normals lead. The work grows with the number of vertices times that of samples: it is meant
+/// for a stand-in of a thousand ([`mesh_core::Proxy`]). What does not depend on the settings is found once.
+pub struct Guide<'a> {
+    input: GuideInput<'a>,
+    /// The longest side of the target.
+    size: f64,
+    graph: SampleGraph,
+    misfits: Misfits,
+}
+
+impl<'a> Guide<'a> {
+    /// Measures the ways from every landmark along both shapes.
+    ///
+    /// # Errors
+    /// As [`crate::initialize`].
+    pub fn new(input: GuideInput<'a>) -> Result<Self, InitError> {
+        check_length(input.triangulation.n_vertices(), input.rest)?;
+        check_landmarks(input.triangulation.n_vertices(), input.landmarks)?;
+        let size = input.target.bounds().longest_side();
+        let graph = SampleGraph::new(input.target, N_SAMPLES);
+        Ok(Self {
+            misfits: Misfits::new(
+                input.triangulation,
+                input.rest,
+                input.landmarks,
+                &graph,
+                size,
+            ),
+            input,
             size,
-        };
-        let counterparts = shapes.counterparts(config.cost(t));
-        let detail = GuideConfig::between(config.detail, t) * size;
-        let goals = goals(&input, &elastic, &x, &counterparts, detail);
-        elastic.draw(&mut x, &goals, config.n_steps)?;
+            graph,
+        })
     }
-    Ok(x)
+
+    /// One position per vertex, in the target's coordinates; where the rest shape is if the target has no extent.
+    ///
+    /// # Errors
+    /// The rest shape is so degenerate that its surface does not determine a deformation.
+    pub fn start(&self, config: &GuideConfig) -> Result<Positions, InitError> {
+        let (input, size) = (&self.input, self.size);
+        let mut x = input.rest.clone();
+        if size <= 0.0 {
+            return Ok(x);
+        }
+        let mut elastic = Elastic::new(input.triangulation, input.rest, size, config)?;
+        if !input.landmarks.is_empty() {
+            let nothing = vec![None; x.len()];
+            let goals = goals(input, &elastic, &x, &nothing, size);
+            elastic.draw(&mut x, &goals, N_FIRST_STEPS)?;
+        }
+        for round in 0..config.n_rounds {
+            let t = round as f64 / (config.n_rounds - 1).max(1) as f64;
+            let shapes = Shapes {
+                triangulation: input.triangulation,
+                rest: input.rest,
+                x: &x,
+                graph: &self.graph,
+                misfits: &self.misfits,
+                size,
+            };
+            let counterparts = shapes.counterparts(config.cost(t));
+            let detail = GuideConfig::between(config.detail, t) * size;
+            let goals = goals(input, &elastic, &x, &counterparts, detail);
+            elastic.draw(&mut x, &goals, config.n_steps)?;
+        }
+        Ok(x)
+    }
 }
 
 /// Landmarks and counterparts as goals; what has neither is held by next to nothing.

@@ -4,7 +4,7 @@ use mesh_core::{
     shapes, Landmark, Point3, PointCloud, PolygonSoup, Positions, TargetSurface, TriangleSoup,
     Triangulation, Vector3, VertexId,
 };
-use mesh_init::{guide, initialize, GuideConfig, GuideInput, InitConfig, InitInput};
+use mesh_init::{initialize, Guide, GuideConfig, GuideInput, InitConfig, InitInput};
 
 /// Half the length of the limb, in radii.
 const HALF: f64 = 6.0;
@@ -83,7 +83,8 @@ fn guided(bend: &Bend, target: &dyn TargetSurface, config: &GuideConfig) -> Posi
         landmarks: &bend.landmarks,
         target,
     };
-    guide(input, config).expect("a limb can be deformed")
+    let guide = Guide::new(input).expect("a limb with landmarks on it");
+    guide.start(config).expect("a limb can be deformed")
 }
 
 /// An end without a landmark turns to its counterpart, through 120 degrees, over a mesh and over a cloud.
