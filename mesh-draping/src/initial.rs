@@ -13,7 +13,7 @@ pub enum InitialMethod {
     /// The best of several starts: that of [`Self::Standard`], and two that are led by distances along the surfaces
     /// ([`mesh_init::Guide`]). Each is tried on a coarse stand-in before the drape begins; to [`initial_deformation`],
     /// which drapes nothing, the same as [`Self::Standard`].
-    Best,
+    Tried,
     /// Affine, then rotations and scales spread from the landmarks: least distortion ([`InitConfig::standard`]).
     Standard,
     /// The paper's: affine, then a biharmonic field ([`InitConfig::paper`]).
@@ -26,7 +26,7 @@ impl InitialMethod {
     /// How landmarks spread; none where the affine map is all.
     pub fn config(self) -> Option<InitConfig> {
         match self {
-            Self::Best | Self::Standard => Some(InitConfig::standard()),
+            Self::Tried | Self::Standard => Some(InitConfig::standard()),
             Self::Paper => Some(InitConfig::paper()),
             Self::Affine => None,
         }

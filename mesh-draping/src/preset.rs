@@ -66,7 +66,7 @@ impl Preset {
     fn of_drape(name: &str, drape: DrapeConfig) -> Self {
         Self {
             name: name.to_owned(),
-            initial: InitialMethod::Best,
+            initial: InitialMethod::Tried,
             drape,
         }
     }
@@ -305,9 +305,9 @@ mod tests {
     #[test]
     fn presets_have_their_own_initial_deformation() {
         let initial = |name: &str| Preset::named(name).unwrap().initial;
-        assert_eq!(initial("standard"), InitialMethod::Best);
+        assert_eq!(initial("standard"), InitialMethod::Tried);
         assert_eq!(initial("paper"), InitialMethod::Paper);
-        assert_eq!(initial("study"), InitialMethod::Best);
+        assert_eq!(initial("study"), InitialMethod::Tried);
         assert_eq!(initial("study-affine-start"), InitialMethod::Affine);
     }
 

@@ -31,7 +31,7 @@ impl StandIn {
             && moves_vertices
             && matches!(
                 preset.initial,
-                InitialMethod::Best | InitialMethod::Standard
+                InitialMethod::Tried | InitialMethod::Standard
             )
     }
 

@@ -26,7 +26,7 @@ pub(crate) struct Start {
 }
 
 impl Start {
-    /// The start that the settings name; for [`InitialMethod::Best`] the best of several.
+    /// The start that the settings name; for [`InitialMethod::Tried`] the best of several.
     ///
     /// # Errors
     /// As [`initial_deformation`].
@@ -35,7 +35,7 @@ impl Start {
             shape: initial_deformation(pair, preset.initial)?,
             drape: preset.drape.clone(),
         };
-        if preset.initial == InitialMethod::Best {
+        if preset.initial == InitialMethod::Tried {
             // What cannot be tried is passed over: the first start needs no trial.
             let _ = start.improve(pair, preset, regions);
         }

@@ -90,7 +90,7 @@ fn a_good_start_is_kept() {
         draping.initial().clone()
     };
     assert!(same_bits(
-        &start(InitialMethod::Best),
+        &start(InitialMethod::Tried),
         &start(InitialMethod::Standard)
     ));
 }
