@@ -8,7 +8,7 @@ use criterion::{criterion_group, criterion_main, BenchmarkId, Criterion, Through
 use faer::linalg::matmul::matmul;
 use faer::{Accum, Mat, Par};
 use mesh_core::{Point3, Positions, Vector3, VertexData};
-use neural_drape::network::{Network, NetworkConfig};
+use neural_drape::network::{Network, NetworkConfig, Shapes};
 use neural_drape::Parametrization;
 
 /// Points on a spiral over the unit sphere.
@@ -36,7 +36,8 @@ fn step(c: &mut Criterion) {
         };
         let paper = NetworkConfig::paper();
         for (name, config) in [("standard", standard), ("wide", wide), ("paper", paper)] {
-            let mut network = Network::new(&x, &config, 0).expect("presets are valid");
+            let mut network =
+                Network::new(Shapes::at_rest(&x), &config, 0).expect("presets are valid");
             network
                 .set_progress(1.0)
                 .expect("a network is always ready");

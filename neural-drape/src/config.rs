@@ -1,10 +1,10 @@
 //! Every setting of a drape. Lengths are in the unit frame of the target: its longest side is 1.
 
-use mesh_core::{Positions, Triangulation};
+use mesh_core::Triangulation;
 use mesh_loss::{Overlap, SamplingConfig};
 use serde::{Deserialize, Serialize};
 
-use crate::network::NetworkConfig;
+use crate::network::{NetworkConfig, Shapes};
 use crate::schedule::{LearningRate, Stage};
 use crate::vertices::{Vertices, VerticesConfig};
 use crate::{DrapeError, Parametrization};
@@ -59,18 +59,20 @@ pub enum ParametrizationConfig {
 }
 
 impl ParametrizationConfig {
-    /// The map that moves `initial`, in the unit frame, with its optimiser.
+    /// The map that moves `shapes.initial`, in the unit frame, with its optimiser.
     pub(crate) fn build(
         &self,
         triangulation: &Triangulation,
-        initial: &Positions,
+        shapes: Shapes<'_>,
         seed: u64,
     ) -> Result<Box<dyn Parametrization>, DrapeError> {
         match self {
-            Self::Network(network) => network.build(initial, seed),
-            Self::Vertices(vertices) => {
-                Ok(Box::new(Vertices::new(triangulation, initial, vertices)?))
-            }
+            Self::Network(network) => network.build(shapes, seed),
+            Self::Vertices(vertices) => Ok(Box::new(Vertices::new(
+                triangulation,
+                shapes.initial,
+                vertices,
+            )?)),
         }
     }
 }

@@ -14,7 +14,7 @@ use mesh_loss::{Beyond, Matches, Overlap, SurfaceMatcher};
 use crate::config::{Descent, DrapeConfig};
 use crate::coverage::{mark_uncovered, Pairing, Target, FAR_BEYOND, N_BEYOND};
 use crate::input::check_length;
-use crate::network::NetworkMap;
+use crate::network::{NetworkMap, Shapes};
 use crate::objective::{self, DistanceLoss, StructuralLoss, TermReport};
 use crate::regions::{Follow, Guidance, Regions};
 use crate::schedule::Weights;
@@ -72,7 +72,8 @@ impl Drape {
     pub fn new(input: DrapeInput<'_>, config: DrapeConfig) -> Result<Self, DrapeError> {
         let (what, seed) = (config.parametrization.clone(), config.seed);
         Self::with_parametrization(input, config, |initial| {
-            what.build(input.triangulation, initial, seed)
+            let rest = input.rest;
+            what.build(input.triangulation, Shapes { rest, initial }, seed)
         })
     }
 

@@ -4,9 +4,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::setting::Setting;
 
-/// Shape of the network that maps initial positions to draped ones.
+/// Shape of the network that moves initial positions to draped ones.
 ///
-/// Positions enter in the frame where the longest side of the initial shape is 2, so a coordinate lies in ±1.
+/// Positions enter in the frame where the longest side of the shape that is seen is 2, so a coordinate lies in ±1.
 #[derive(Clone, Copy, PartialEq, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct NetworkConfig {
@@ -14,11 +14,24 @@ pub struct NetworkConfig {
     pub n_hidden_layers: usize,
     /// Neurons of each hidden layer, ≥ 1. Paper: 256.
     pub width: usize,
-    /// What the first layer sees of a position.
+    /// Which position of a vertex the network sees.
+    pub input: NetworkInput,
+    /// What the first layer sees of it.
     pub encoding: Encoding,
     /// Length, in half longest sides, of the offset for which the last layer puts out 1. It sets how far an Adam step
     /// moves a vertex.
     pub output_scale: f64,
+}
+
+/// Which position of a vertex a network sees.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum NetworkInput {
+    /// Where it starts: the network is a map of space (the paper).
+    Initial,
+    /// Where it is in the source: parts that start laid on each other, and places of a part that starts crumpled, are apart
+    /// to the network. It is a map of the surface alone.
+    Rest,
 }
 
 /// What the first layer sees of a position x.
@@ -85,6 +98,7 @@ impl NetworkConfig {
         Self {
             n_hidden_layers: 4,
             width: 256,
+            input: NetworkInput::Initial,
             encoding: Encoding::Progressive {
                 frequencies: Frequencies::Uniform {
                     count: 253,
@@ -114,6 +128,14 @@ impl NetworkConfig {
                 reveal: Reveal::Even { until: 0.4 },
             },
             ..Self::paper()
+        }
+    }
+
+    /// [`Self::standard`] over the positions of the source: the smooth map that leads a start ([`crate::DrapeConfig::guide`]).
+    pub fn guide() -> Self {
+        Self {
+            input: NetworkInput::Rest,
+            ..Self::standard()
         }
     }
 

@@ -30,7 +30,7 @@ impl NetworkMap {
             .par_chunks(BLOCK_SIZE)
             .flat_map_iter(|chunk| {
                 let mut block = Block::new(
-                    chunk.iter().map(|p| self.to_input(p)).collect(),
+                    chunk.iter().map(|p| to_input(&self.frame, p)).collect(),
                     &self.waves,
                     &self.layers,
                 );
@@ -76,14 +76,6 @@ impl NetworkMap {
                 .all(|pair| pair[0].n_outputs() == pair[1].n_inputs())
     }
 
-    /// A point as the network sees it: ±1 over the shape's longest side.
-    pub(super) fn to_input(&self, p: &Point3) -> [f32; 3] {
-        (self.frame.to_unit(p) * 2.0)
-            .coords
-            .map(|c| c as f32)
-            .into()
-    }
-
     /// The offset that an output stands for, in the shape's units.
     pub(super) fn offset(&self, output: [f32; 3]) -> Vector3 {
         Vector3::from(output.map(f64::from)) * self.output_unit()
@@ -93,4 +85,9 @@ impl NetworkMap {
     pub(super) fn output_unit(&self) -> f64 {
         0.5 * self.frame.scale * self.output_scale
     }
+}
+
+/// A point as the network sees it: ±1 over the longest side of the shape that `frame` is of.
+pub(super) fn to_input(frame: &UnitFrame, p: &Point3) -> [f32; 3] {
+    (frame.to_unit(p) * 2.0).coords.map(|c| c as f32).into()
 }

@@ -7,19 +7,22 @@ use mesh_core::{Aabb, Positions, UnitFrame, Vector3, VertexData};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
-use super::config::{Encoding, NetworkConfig};
+use super::config::{Encoding, NetworkConfig, NetworkInput};
 use super::encoding::Waves;
-use super::map::NetworkMap;
+use super::map::{to_input, NetworkMap};
 use super::mask::Mask;
 use super::pass::Pass;
 use super::tape::{lock, Adam, Evaluation, Parameters};
+use super::Shapes;
+use crate::input::check_length;
 use crate::setting::Setting;
 use crate::{DrapeError, Parametrization, StateReader, StateWriter};
 
-/// Positions as a network of the initial positions: `x = x₀ + r · mlp(encoding(x₀ / r))`, r half the longest side.
+/// Positions as a network of the initial positions: `x = x₀ + r · mlp(encoding(x₀ / r))`, r half the longest side; or of
+/// those of the source, y: `x = x₀ + r · mlp(encoding(y / r_y))` ([`NetworkInput::Rest`]).
 ///
-/// The last layer starts at zero, so the network starts exactly at the initial positions, and equal initial positions
-/// stay equal. dfdx owns the parameters, the tape and Adam (betas 0.9 and 0.999, ε 1e-8); the layers are one fused
+/// The last layer starts at zero, so the network starts exactly at the initial positions, and equal positions that are seen
+/// move alike. dfdx owns the parameters, the tape and Adam (betas 0.9 and 0.999, ε 1e-8); the layers are one fused
 /// operation on its tape. Inside all is f32; the same seed gives the same bits whatever the thread count.
 ///
 /// Source: Mesh Draping, "Progressive Positional Encoding". Departures: see [`NetworkConfig::paper`].
@@ -32,20 +35,22 @@ pub struct Network {
     adam: Adam,
     evaluation: Arc<Mutex<Evaluation>>,
     progress: f64,
-    /// Whether more than the network moves the initial positions.
+    /// Whether the positions are more than a map of the initial ones by the network.
     is_displaced: bool,
 }
 
 impl Network {
-    /// A network that leaves `initial` where it is, with every other weight drawn from `seed`.
+    /// A network that leaves `shapes.initial` where it is, with every other weight drawn from `seed`.
     ///
     /// # Errors
-    /// A setting is out of its range.
+    /// A setting is out of its range, or the shapes differ in length.
     ///
     /// # Panics
     /// If there is no position.
-    pub fn new(initial: &Positions, config: &NetworkConfig, seed: u64) -> Result<Self, DrapeError> {
+    pub fn new(shapes: Shapes<'_>, config: &NetworkConfig, seed: u64) -> Result<Self, DrapeError> {
+        let Shapes { rest, initial } = shapes;
         assert!(!initial.is_empty(), "a network needs a vertex to move");
+        check_length("the rest shape", rest.len(), initial.len())?;
         Setting::check(config.settings())?;
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
         let waves = Waves::draw(&config.encoding, &mut rng);
@@ -63,7 +68,7 @@ impl Network {
             layers: Vec::new(),
         };
         parameters.copy_into(&mut map, &mask);
-        let inputs: Vec<[f32; 3]> = initial.iter().map(|p| map.to_input(p)).collect();
+        let inputs = inputs(shapes, config.input);
         let mut pass = Pass::new(&inputs, &map, is_trainable);
         pass.forward(&map);
         Ok(Self {
@@ -74,7 +79,7 @@ impl Network {
             adam: Adam::new(),
             evaluation: Arc::new(Mutex::new(Evaluation { map, pass, mask })),
             progress: 0.0,
-            is_displaced: false,
+            is_displaced: config.input != NetworkInput::Initial,
         })
     }
 
@@ -103,6 +108,16 @@ impl Network {
             *x = x0 + map.offset(output);
         }
     }
+}
+
+/// The positions that the network sees, ±1 over the longest side of their shape.
+fn inputs(shapes: Shapes<'_>, input: NetworkInput) -> Vec<[f32; 3]> {
+    let seen = match input {
+        NetworkInput::Initial => shapes.initial,
+        NetworkInput::Rest => shapes.rest,
+    };
+    let frame = UnitFrame::of(Aabb::of(seen));
+    seen.iter().map(|p| to_input(&frame, p)).collect()
 }
 
 impl Parametrization for Network {

@@ -29,7 +29,7 @@ mod pass;
 #[cfg(feature = "network")]
 mod tape;
 
-pub use config::{Encoding, Frequencies, NetworkConfig, Reveal};
+pub use config::{Encoding, Frequencies, NetworkConfig, NetworkInput, Reveal};
 pub use map::NetworkMap;
 #[cfg(feature = "network")]
 pub use mlp::Network;
@@ -40,22 +40,41 @@ use crate::{DrapeError, Parametrization};
 pub(crate) use encoding::{WaveKind, Waves};
 pub(crate) use layer::Layer;
 
+/// The shapes of a source that a network moves, one position per vertex each.
+#[derive(Clone, Copy, Debug)]
+pub struct Shapes<'a> {
+    /// The source as given, in any frame.
+    pub rest: &'a Positions,
+    /// Where it starts.
+    pub initial: &'a Positions,
+}
+
+impl<'a> Shapes<'a> {
+    /// A source that starts as it is given.
+    pub const fn at_rest(x: &'a Positions) -> Self {
+        Self {
+            rest: x,
+            initial: x,
+        }
+    }
+}
+
 impl NetworkConfig {
-    /// The network that moves `initial`.
+    /// The network that moves `shapes.initial`.
     #[cfg(feature = "network")]
     pub(crate) fn build(
         &self,
-        initial: &Positions,
+        shapes: Shapes<'_>,
         seed: u64,
     ) -> Result<Box<dyn Parametrization>, DrapeError> {
-        Ok(Box::new(Network::new(initial, self, seed)?))
+        Ok(Box::new(Network::new(shapes, self, seed)?))
     }
 
     /// An error: this build has no network.
     #[cfg(not(feature = "network"))]
     pub(crate) fn build(
         &self,
-        _initial: &Positions,
+        _shapes: Shapes<'_>,
         _seed: u64,
     ) -> Result<Box<dyn Parametrization>, DrapeError> {
         Err(DrapeError::NetworkFeatureOff)

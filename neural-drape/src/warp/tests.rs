@@ -11,7 +11,7 @@ use super::format::{decode, encode, FormatError};
 use super::*;
 use crate::network::{Layer, NetworkMap, WaveKind, Waves};
 #[cfg(feature = "network")]
-use crate::network::{Network, NetworkConfig};
+use crate::network::{Network, NetworkConfig, Shapes};
 #[cfg(feature = "network")]
 use crate::Parametrization;
 
@@ -44,7 +44,8 @@ fn network_warp(config: &NetworkConfig) -> (Warp, Positions, Positions) {
     let (mesh, rest) = shapes::icosphere(3).into_halfedge().unwrap();
     let initial = rest.map(|p| p + Vector3::new(0.0, 0.2 * p.x, 5.0));
     let frame = UnitFrame::of(Aabb::of(&initial));
-    let mut network = Network::new(&initial.map(|p| frame.to_unit(p)), config, 0).unwrap();
+    let x0 = initial.map(|p| frame.to_unit(p));
+    let mut network = Network::new(Shapes::at_rest(&x0), config, 0).unwrap();
     network.set_progress(1.0).unwrap();
     let gradient = VertexData::from_iter(rest.iter().map(|p| p.coords * p.z));
     for _ in 0..10 {

@@ -15,6 +15,7 @@ fn configs() -> [NetworkConfig; 3] {
     let small = |encoding| NetworkConfig {
         n_hidden_layers: 2,
         width: 16,
+        input: NetworkInput::Initial,
         encoding,
         output_scale: 0.5,
     };
@@ -51,7 +52,7 @@ fn field(x: &Positions) -> VertexData<Vector3> {
 
 /// A network that has left the identity, halfway through its encoding.
 fn trained(config: &NetworkConfig, x0: &Positions) -> Network {
-    let mut network = Network::new(x0, config, 3).unwrap();
+    let mut network = Network::new(Shapes::at_rest(x0), config, 3).unwrap();
     network.set_progress(0.3).unwrap();
     for _ in 0..20 {
         let gradient = field(network.positions());
@@ -72,7 +73,7 @@ fn squared_distance(x: &Positions, y: &Positions) -> f64 {
 fn starts_exactly_at_the_identity() {
     let x0 = sphere();
     for config in configs() {
-        let mut network = Network::new(&x0, &config, 3).unwrap();
+        let mut network = Network::new(Shapes::at_rest(&x0), &config, 3).unwrap();
         assert_eq!(network.positions(), &x0);
         network.set_progress(1.0).unwrap();
         network.evaluate();
@@ -103,7 +104,7 @@ fn descends_towards_an_ellipsoid() {
     let x0 = sphere();
     let target = x0.map(|p| Point3::new(1.5 * p.x, p.y, 0.6 * p.z + 0.1 * p.x * p.y));
     for config in configs() {
-        let mut network = Network::new(&x0, &config, 1).unwrap();
+        let mut network = Network::new(Shapes::at_rest(&x0), &config, 1).unwrap();
         let before = squared_distance(&x0, &target);
         for step in 0..150 {
             network.set_progress(step as f64 / 150.0).unwrap();
