@@ -9,7 +9,7 @@ use crate::Pair;
 /// A triangle hangs where its middle is farther than this from the target, in longest sides.
 const HANGING: f64 = 0.012;
 /// Rings of vertices around what hangs that are shaped anew with it, one more in each further round.
-const N_RINGS: usize = 2;
+const N_RINGS: usize = 4;
 /// Where more than this share of the area would be shaped anew, the whole is in a wrong place: shaping parts is no help.
 const LARGEST_SHARE: f64 = 0.2;
 
