@@ -181,27 +181,27 @@ impl<'a> Case<'a> {
         let most = MOST_EXCHANGES.min(pairs.len() / 2);
         let mut ways = None;
         while findings.len() < most {
-            let Some((i, j)) = exchanged(pairs) else {
+            let Some(suspects) = exchanged(pairs) else {
                 break;
             };
             let ways = ways.get_or_insert_with(|| Ways::of(self.pair));
-            let (i, j) = match ways {
-                Some(ways) => {
-                    let Some([i, j]) = ways.exchanged() else {
-                        break;
-                    };
-                    ways.exchange([i, j]);
-                    let (a, b) = (self.label(i), self.label(j));
-                    findings.push(Finding::Exchanged { a, b });
-                    (i, j)
-                }
-                None => {
-                    let (a, b) = (self.label(i), self.label(j));
-                    findings.push(Finding::PerhapsExchanged { a, b });
-                    (i, j)
-                }
+            let Some([i, j]) = ways.as_ref().map_or(Some(suspects), Ways::exchanged) else {
+                break;
             };
-            (pairs[i].target, pairs[j].target) = (pairs[j].target, pairs[i].target);
+            let before = Similarity::fit(pairs).rms(pairs);
+            exchange(pairs, [i, j]);
+            if Similarity::fit(pairs).rms(pairs) >= before {
+                exchange(pairs, [i, j]);
+                break;
+            }
+            let (a, b) = (self.label(i), self.label(j));
+            findings.push(match ways {
+                Some(ways) => {
+                    ways.exchange([i, j]);
+                    Finding::Exchanged { a, b }
+                }
+                None => Finding::PerhapsExchanged { a, b },
+            });
         }
         findings
     }
@@ -294,8 +294,13 @@ fn others_agree(pairs: &[PointPair], i: usize, j: usize) -> bool {
         .all(|(before, after)| map.miss(after) < map.miss(before))
 }
 
+/// Exchanges the targets of two pairs.
+fn exchange(pairs: &mut [PointPair], [i, j]: [usize; 2]) {
+    (pairs[i].target, pairs[j].target) = (pairs[j].target, pairs[i].target);
+}
+
 /// The two pairs whose exchange lowers the misfit most, if it does so by enough.
-fn exchanged(pairs: &[PointPair]) -> Option<(usize, usize)> {
+fn exchanged(pairs: &[PointPair]) -> Option<[usize; 2]> {
     if !(ENOUGH_FOR_AFFINE + 1..=ENOUGH_TO_TRUST).contains(&pairs.len()) {
         return None;
     }
@@ -304,12 +309,12 @@ fn exchanged(pairs: &[PointPair]) -> Option<(usize, usize)> {
     let mut best = (EXCHANGE_GAIN * before, None);
     for j in 1..pairs.len() {
         for i in 0..j {
-            (trial[i].target, trial[j].target) = (pairs[j].target, pairs[i].target);
+            exchange(&mut trial, [i, j]);
             let after = Similarity::fit(&trial).rms(&trial);
             if after < best.0 && others_agree(pairs, i, j) {
-                best = (after, Some((i, j)));
+                best = (after, Some([i, j]));
             }
-            (trial[i].target, trial[j].target) = (pairs[i].target, pairs[j].target);
+            exchange(&mut trial, [i, j]);
         }
     }
     best.1
