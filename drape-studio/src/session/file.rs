@@ -3,8 +3,9 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use anyhow::{ensure, Context as _};
+use anyhow::{anyhow, ensure, Context as _};
 use mesh_core::io::write_atomic;
+use mesh_draping::plain_words;
 use serde::{Deserialize, Serialize};
 
 use super::mark::Mark;
@@ -75,7 +76,9 @@ impl Session {
             stated == Some(check_sum(&value)?.into()),
             "is damaged: its content is not that of its check sum"
         );
-        let session: Self = serde_json::from_value(value).context("is not a session file")?;
+        let session: Self = serde_json::from_value(value).map_err(|error| {
+            anyhow!("is not a session file: {}", plain_words(&error.to_string()))
+        })?;
         session.check()?;
         Ok(session)
     }

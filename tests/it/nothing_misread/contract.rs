@@ -8,7 +8,7 @@ use crate::support::Workplace;
 #[test]
 fn weights_that_are_none() {
     let place = Workplace::new();
-    for weight in ["nan", "-0.5", "inf", "2"] {
+    for weight in ["NaN", "-0.5", "inf", "2"] {
         place.write("weights.txt", &format!("0 {weight}\n"));
         assert_refused(
             &place.transfer("--weights weights.txt"),

@@ -53,7 +53,10 @@ fn no_words_of_the_language_that_this_is_written_in() {
 
 #[test]
 fn formats_have_their_article() {
-    assert_refused(&inspected("a.ply", b"\0\x01\x02"), &["a PLY file"]);
+    assert_refused(
+        &inspected("a.ply", "ply\nformat ascii 1.0\nend_header\n"),
+        &["a PLY file"],
+    );
     assert_refused(&inspected("a.obj", "# nothing\n"), &["an OBJ file"]);
 }
 
