@@ -8,7 +8,7 @@ use crate::Pair;
 /// Sources with more vertices than this are measured on a stand-in of so many.
 const N_VERTICES: usize = 3000;
 /// Share of the misfit that exchanging two landmarks must leave, at most. Surfaces that touch make ways shorter than they
-/// are, so that clean sets come to 0.93.
+/// are: with 0.95 two of forty clean sets of animals and people were called exchanged, with 0.92 none.
 const EXCHANGE_GAIN: f64 = 0.92;
 /// Ways are compared where at least this share of the pairs of landmarks is joined on both shapes.
 const JOINED: f64 = 0.5;
