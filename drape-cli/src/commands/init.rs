@@ -3,7 +3,8 @@
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use mesh_draping::initial_deformation;
+use mesh_core::Positions;
+use mesh_draping::{initial_deformation, Pair};
 use mesh_render::{Gallery, Image, View};
 
 use crate::args::{
@@ -84,21 +85,7 @@ pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
             .write(file, &pair.source.spread(&positions), &args.output)?;
     }
     if let Some(path) = &args.render {
-        let gallery = Gallery::new(&pair, &positions, args.view.up, PICTURE_SIZE)?;
-        let row = |view| {
-            Image::row(&[
-                gallery.source(view),
-                gallery.target(view),
-                gallery.initial(&positions, view),
-            ])
-        };
-        let rows: Vec<Image> = args
-            .view
-            .views_or(&[View::FRONT_QUARTER])
-            .into_iter()
-            .map(row)
-            .collect();
-        Image::column(&rows).save(path)?;
+        picture(args, &pair, &positions)?.save(path)?;
     }
     if args.json {
         let usage = watch.read().figures();
@@ -118,6 +105,21 @@ pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
         say_beside(&args.output, &format!("{report}{wrote}"))?;
     }
     Ok(ExitCode::SUCCESS)
+}
+
+/// Source, target and result, a row for each view.
+fn picture(args: &Args, pair: &Pair, positions: &Positions) -> anyhow::Result<Image> {
+    let gallery = Gallery::new(pair, positions, args.view.up, PICTURE_SIZE)?;
+    let row = |view| {
+        Image::row(&[
+            gallery.source(view),
+            gallery.target(view),
+            gallery.initial(positions, view),
+        ])
+    };
+    let views = args.view.views_or(&[View::FRONT_QUARTER]);
+    let rows: Vec<Image> = views.into_iter().map(row).collect();
+    Ok(Image::column(&rows))
 }
 
 fn check_outputs(args: &Args) -> anyhow::Result<()> {

@@ -71,7 +71,8 @@ fn choose_role(bytes: &mut [u8], dice: &mut Dice) {
         match (is_mesh, *role) {
             (true, _) => {
                 *role = dice.byte();
-                *kind = (*kind + 8 * (dice.byte() % 32)) | 64 * u8::from(dice.below(8) > 0);
+                let is_plain = u8::from(dice.below(8) > 0);
+                *kind = (*kind + 8 * (dice.byte() % 32)) | (is_plain << 6);
             }
             (false, 0) => *role = [0, 2][dice.below(2)],
             _ => (),
