@@ -5,7 +5,7 @@ use std::process::ExitCode;
 use std::str::FromStr;
 
 /// Figures that a requirement may name, in the order of a report.
-const NAMES: [&str; 32] = [
+const NAMES: [&str; 33] = [
     "q_transfer",
     "dirichlet",
     "dirichlet_raw",
@@ -35,6 +35,7 @@ const NAMES: [&str; 32] = [
     "truth_mean",
     "truth_p95",
     "truth_max",
+    "left_out",
     "cpu_seconds",
     "wall_seconds",
     "peak_mb",

@@ -8,7 +8,7 @@ use neural_drape::DrapeConfig;
 use serde::de::DeserializeOwned;
 use toml::{Table, Value};
 
-use crate::InitialMethod;
+use crate::{plain_words, InitialMethod};
 
 /// How a source is draped: the initial deformation and the drape itself.
 ///
@@ -200,7 +200,7 @@ fn parse(text: &str) -> Result<Table, PresetProblem> {
             .map_or("", |span| text.get(..span.start).unwrap_or(text));
         PresetProblem::Syntax {
             line: before.lines().count().max(1),
-            message: error.message().replace('\n', ", "),
+            message: plain_words(&error.message().replace('\n', ", ")),
         }
     })
 }
@@ -215,9 +215,8 @@ fn over(mut overrides: Table, preset: Option<&str>) -> Result<Preset, PresetProb
         Some(name) => Preset::named(&name).map_err(|error| error.problem)?,
         None => Preset::standard(),
     };
-    let setting = |error: &dyn std::fmt::Display| {
-        PresetProblem::Setting(error.to_string().trim().replace('\n', " "))
-    };
+    let setting =
+        |error: &dyn std::fmt::Display| PresetProblem::Setting(plain_words(&error.to_string()));
     let mut merged = Value::try_from(&preset.drape).map_err(|error| setting(&error))?;
     merge(&mut merged, Value::Table(overrides));
     let drape = merged.try_into();
@@ -239,7 +238,7 @@ fn take<T: DeserializeOwned>(
     let value = value.try_into();
     let wrong = |error: toml::de::Error| PresetProblem::Value {
         key,
-        message: error.message().to_owned(),
+        message: plain_words(error.message()),
     };
     value.map(Some).map_err(wrong)
 }

@@ -6,6 +6,7 @@ mod commands;
 mod data;
 mod gate;
 mod landmarks;
+mod nothing_misread;
 mod real_pair;
 mod regions;
 mod seams;

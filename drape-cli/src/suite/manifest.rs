@@ -23,7 +23,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{anyhow, ensure, Context as _};
 use mesh_core::io::Format;
-use mesh_draping::Preset;
+use mesh_draping::{plain_words, Preset};
 use serde::Deserialize;
 
 use super::{Method, Pair, Task, INITIAL};
@@ -124,7 +124,7 @@ impl Manifest {
             anyhow!(
                 "line {}: {}",
                 before.lines().count().max(1),
-                error.message().replace('\n', ", ")
+                plain_words(&error.message().replace('\n', ", "))
             )
         })?;
         let root = match &file.data {
