@@ -32,11 +32,12 @@ pub struct Preset {
 /// A name, and what it stands for.
 type Named = (&'static str, fn() -> Preset);
 
-const PRESETS: [Named; 4] = [
+const PRESETS: [Named; 5] = [
     ("standard", Preset::standard),
     ("quick", Preset::quick),
     ("network", Preset::network),
     ("paper", Preset::paper),
+    ("authors", Preset::authors),
 ];
 
 impl Preset {
@@ -60,6 +61,14 @@ impl Preset {
         Self {
             initial: InitialMethod::Paper,
             ..Self::of_drape("paper", DrapeConfig::paper())
+        }
+    }
+
+    /// The authors' program ([`DrapeConfig::authors`]), its initial deformation included.
+    pub fn authors() -> Self {
+        Self {
+            initial: InitialMethod::Paper,
+            ..Self::of_drape("authors", DrapeConfig::authors())
         }
     }
 
@@ -307,6 +316,7 @@ mod tests {
         let initial = |name: &str| Preset::named(name).unwrap().initial;
         assert_eq!(initial("standard"), InitialMethod::Tried);
         assert_eq!(initial("paper"), InitialMethod::Paper);
+        assert_eq!(initial("authors"), InitialMethod::Paper);
         assert_eq!(initial("study"), InitialMethod::Tried);
         assert_eq!(initial("study-affine-start"), InitialMethod::Affine);
     }

@@ -6,22 +6,23 @@ use dfdx::prelude::{
 };
 use mesh_core::{shapes, Point3};
 
-use super::super::config::{Frequencies, Reveal};
+use super::super::config::{Frequencies, Networks, Reveal};
 use super::super::encoding::WaveKind;
 use super::*;
 
 /// Small enough to check, with every kind of encoding.
-fn configs() -> [NetworkConfig; 3] {
+fn configs() -> [NetworkConfig; 4] {
     let small = |encoding| NetworkConfig {
         n_hidden_layers: 2,
         width: 16,
         encoding,
         output_scale: 0.5,
     };
-    let progressive = |frequencies, reveal| Encoding::Progressive {
+    let progressive = |frequencies, reveal, networks| Encoding::Progressive {
         frequencies,
         n_blocks: 3,
         reveal,
+        networks,
     };
     let uniform = Frequencies::Uniform {
         count: 11,
@@ -32,10 +33,16 @@ fn configs() -> [NetworkConfig; 3] {
         count: 7,
         deviation: 2.0,
     };
+    let hold = Reveal::HoldAndFade { until: 1.0 };
     [
         small(Encoding::None),
-        small(progressive(uniform, Reveal::HoldAndFade)),
-        small(progressive(gaussian, Reveal::Even { until: 0.5 })),
+        small(progressive(uniform, hold, Networks::One)),
+        small(progressive(
+            gaussian,
+            Reveal::Even { until: 0.5 },
+            Networks::One,
+        )),
+        small(progressive(uniform, hold, Networks::OnePerBlock)),
     ]
 }
 
@@ -205,7 +212,7 @@ fn plain_dfdx(network: &Network, weights: &VertexData<Vector3>) -> (Vec<f32>, Gr
             let shape = (entries.len() / n_columns, n_columns);
             device.tensor_from_vec(entries, shape)
         };
-    let Evaluation { map, mask, .. } = &*lock(&network.evaluation);
+    let Evaluation { map, masks, .. } = &*lock(&network.evaluation);
     let n = network.initial.len();
     let points = matrix(
         network
@@ -217,40 +224,47 @@ fn plain_dfdx(network: &Network, weights: &VertexData<Vector3>) -> (Vec<f32>, Gr
     );
     let tensors = network.parameters.tensors();
 
-    let n_features = mask.alpha().len();
-    let mut features = match map.waves.kind {
-        _ if n_features == 3 => points.leaky_traced(),
+    let n_features = map.waves.n_features();
+    let features = || match map.waves.kind {
+        _ if n_features == 3 => points.clone().leaky_traced(),
         WaveKind::Sine => {
             let rows = tensors[tensors.len() - 1].leaky_trace();
             let phases = points
                 .clone()
                 .leaky_traced()
                 .matmul(rows.permute::<_, Axes2<1, 0>>());
-            (points.leaky_traced(), (phases * map.waves.gain).sin()).concat_along(Axis::<1>)
+            (points.clone().leaky_traced(), (phases * map.waves.gain).sin()).concat_along(Axis::<1>)
         }
         WaveKind::SineCosine => {
             let mut entries = vec![0.0; n * n_features];
+            let mut encoder = map.waves.encoder();
             for (p, features) in network.initial.iter().zip(entries.chunks_mut(n_features)) {
-                map.waves.encode(&map.to_input(p), features, None);
+                encoder.encode(&map.to_input(p), features, None);
             }
             matrix(entries, n_features).leaky_traced()
         }
     };
-    let mut diagonal = vec![0.0; n_features * n_features];
-    for (k, m) in mask.alpha().iter().enumerate() {
-        diagonal[k * (n_features + 1)] = *m;
-    }
-    features = features.matmul(matrix(diagonal, n_features));
-
-    let n_layers = map.layers.len();
-    for l in 0..n_layers {
-        let ones = matrix(vec![1.0; n], 1).leaky_traced();
-        let bias = ones.matmul(tensors[2 * l + 1].clone());
-        features = features.matmul(tensors[2 * l].clone()) + bias;
-        if l + 1 < n_layers {
-            features = features.relu();
+    let mut tensors_left = tensors.iter().copied();
+    let mut sum = matrix(vec![0.0; 3 * n], 3).leaky_traced();
+    for (mask, layers) in masks.iter().zip(&map.networks) {
+        // The first features that the network is made for, each by its α.
+        let n_seen = mask.n_features();
+        let mut masked = vec![0.0; n_features * n_seen];
+        for (k, alpha) in mask.alpha().iter().enumerate() {
+            masked[k * (n_seen + 1)] = *alpha;
         }
+        let mut values = features().matmul(matrix(masked, n_seen));
+        for l in 0..layers.len() {
+            let (weight, bias) = tensors_left.next().zip(tensors_left.next()).unwrap();
+            let ones = matrix(vec![1.0; n], 1).leaky_traced();
+            values = values.matmul(weight.clone()) + ones.matmul(bias.clone());
+            if l + 1 < layers.len() {
+                values = values.relu();
+            }
+        }
+        sum = sum + values * mask.output();
     }
+    let features = sum;
     let output = features.as_vec();
     let unit = map.output_unit();
     let weights = weights
@@ -260,4 +274,32 @@ fn plain_dfdx(network: &Network, weights: &VertexData<Vector3>) -> (Vec<f32>, Gr
         .sum::<(), _>()
         .backward();
     (output, gradients)
+}
+
+#[test]
+fn a_network_that_comes_in_late_steps_as_one_that_begins() {
+    // Adam's first step moves every weight by the learning rate, whenever it is; with moments that are corrected for steps
+    // in which the network was hidden, it would be three times as far.
+    let x0 = sphere();
+    let config = configs()[3];
+    let mut network = Network::new(&x0, &config, 3).unwrap();
+    let last_of = |network: &Network, k: usize| {
+        let tensors = network.parameters.tensors();
+        let mut entries = Vec::new();
+        super::super::tape::copy(tensors[6 * k + 4], &mut entries);
+        entries
+    };
+    for _ in 0..20 {
+        let gradient = field(network.positions());
+        network.descend(&gradient, 1e-3).unwrap();
+    }
+    assert!(last_of(&network, 1).iter().all(|&w| w == 0.0));
+    // The step that reveals it evaluates it; the next one moves it.
+    network.set_progress(0.5).unwrap();
+    network.evaluate();
+    let gradient = field(network.positions());
+    network.descend(&gradient, 1e-3).unwrap();
+    let moved = last_of(&network, 1);
+    assert!(moved.iter().all(|w| w.abs() < 1.01e-3));
+    assert!(moved.iter().any(|w| w.abs() > 0.99e-3));
 }
