@@ -91,10 +91,14 @@ impl Preset {
         let mut presets: Vec<Self> = studies
             .map(|study| Self::of_drape(study.name, study.config))
             .collect();
-        presets.push(Self {
-            initial: InitialMethod::Affine,
-            ..Self::of_drape("study-affine-start", DrapeConfig::study())
-        });
+        let starts = [
+            ("study-biharmonic-start", InitialMethod::Paper),
+            ("study-affine-start", InitialMethod::Affine),
+        ];
+        presets.extend(starts.map(|(name, initial)| Self {
+            initial,
+            ..Self::of_drape(name, DrapeConfig::study())
+        }));
         presets
     }
 

@@ -10,6 +10,7 @@ mod real_pair;
 mod regions;
 mod seams;
 mod studio;
+mod study;
 mod suite;
 mod support;
 mod transfer;

@@ -6,7 +6,7 @@ mod parts;
 mod settings;
 mod view;
 
-pub(crate) use gate::GateArgs;
+pub(crate) use gate::{write_between, GateArgs};
 pub(crate) use inputs::{read_truth, Inputs, MorphArgs, Morphing, WeldArgs};
 pub(crate) use parts::PartArgs;
 pub(crate) use settings::{InitialArg, SettingsArgs};

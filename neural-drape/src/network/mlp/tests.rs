@@ -233,7 +233,11 @@ fn plain_dfdx(network: &Network, weights: &VertexData<Vector3>) -> (Vec<f32>, Gr
                 .clone()
                 .leaky_traced()
                 .matmul(rows.permute::<_, Axes2<1, 0>>());
-            (points.clone().leaky_traced(), (phases * map.waves.gain).sin()).concat_along(Axis::<1>)
+            (
+                points.clone().leaky_traced(),
+                (phases * map.waves.gain).sin(),
+            )
+                .concat_along(Axis::<1>)
         }
         WaveKind::SineCosine => {
             let mut entries = vec![0.0; n * n_features];
@@ -302,4 +306,24 @@ fn a_network_that_comes_in_late_steps_as_one_that_begins() {
     let moved = last_of(&network, 1);
     assert!(moved.iter().all(|w| w.abs() < 1.01e-3));
     assert!(moved.iter().any(|w| w.abs() > 0.99e-3));
+}
+
+#[test]
+fn a_first_step_moves_every_weight_by_the_learning_rate_and_a_second_like_it_again() {
+    // Adam, its moments corrected: m / √v is 1 in the first step, and in all that have the same gradient.
+    let x0 = sphere();
+    for config in configs() {
+        let mut network = Network::new(&x0, &config, 3).unwrap();
+        let gradient = field(&x0);
+        for n_steps in 1..=2 {
+            network.descend(&gradient, 1e-5).unwrap();
+            let mut last = Vec::new();
+            super::super::tape::copy(network.parameters.tensors()[4], &mut last);
+            // A neuron that no point activates stays.
+            let moved = last.iter().filter(|w| **w != 0.0);
+            assert!(moved.clone().count() > last.len() / 2);
+            let expected = n_steps as f32 * 1e-5;
+            assert!(moved.clone().all(|w| (w.abs() / expected - 1.0).abs() < 0.02));
+        }
+    }
 }
