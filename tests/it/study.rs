@@ -34,12 +34,12 @@ fn a_study_compares_settings_on_any_manifest_and_writes_its_part_of_a_page() {
     ];
     place.write(
         "page.md",
-        &format!("# Mine\n{}\nold\n{}\nmy words\n", marks[0], marks[1]),
+        &format!("# Mine\n{}\nstale\n{}\nmy words\n", marks[0], marks[1]),
     );
     place.drape(line).well();
     let page = place.read("page.md");
     assert!(
-        page.starts_with("# Mine\n") && page.ends_with("\nmy words\n") && !page.contains("old")
+        page.starts_with("# Mine\n") && page.ends_with("\nmy words\n") && !page.contains("stale")
     );
     assert!(page.contains("commit abc1234") && page.contains("6 runs"));
     assert!(
