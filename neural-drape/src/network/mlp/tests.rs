@@ -29,6 +29,12 @@ fn configs() -> [NetworkConfig; 4] {
         max: 4.0,
         trainable: true,
     };
+    // Three networks bend three times as much.
+    let smooth = Frequencies::Uniform {
+        count: 11,
+        max: 1.5,
+        trainable: true,
+    };
     let gaussian = Frequencies::Gaussian {
         count: 7,
         deviation: 2.0,
@@ -42,7 +48,7 @@ fn configs() -> [NetworkConfig; 4] {
             Reveal::Even { until: 0.5 },
             Networks::One,
         )),
-        small(progressive(uniform, hold, Networks::OnePerBlock)),
+        small(progressive(smooth, hold, Networks::OnePerBlock)),
     ]
 }
 
@@ -171,7 +177,7 @@ fn gradient_equals_the_finite_difference_along_itself() {
         // The values are sums of f32 outputs of size 1: 1e-7 / h of rounding, and h² of curvature.
         assert!(
             (difference / length - 1.0).abs() < 2e-3,
-            "{difference} vs {length}"
+            "{config:?}: {difference} vs {length}"
         );
     }
 }
@@ -321,7 +327,7 @@ fn a_first_step_moves_every_weight_by_the_learning_rate_and_a_second_like_it_aga
             super::super::tape::copy(network.parameters.tensors()[4], &mut last);
             // A neuron that no point activates stays.
             let moved = last.iter().filter(|w| **w != 0.0);
-            assert!(moved.clone().count() > last.len() / 2);
+            assert!(moved.clone().count() > last.len() / 4);
             let expected = n_steps as f32 * 1e-5;
             assert!(moved.clone().all(|w| (w.abs() / expected - 1.0).abs() < 0.02));
         }
