@@ -6,7 +6,7 @@
 #![allow(clippy::print_stderr, reason = "criterion has no words for a ratio")]
 
 use std::hint::black_box;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use criterion::{criterion_group, criterion_main, BenchmarkId, Criterion, Throughput};
 use faer::linalg::matmul::matmul;
@@ -69,8 +69,7 @@ const PRODUCTS: [(&str, usize, WaveTraining); 3] = [
 /// Turns in which a step and its products follow each other.
 const N_TURNS: usize = 41;
 
-/// Says how many times as long as its products a step takes: the middle of the ratios of all turns, so that what else the
-/// machine does counts on both sides.
+/// Says how many times as long as its products a step takes: the middle of the ratios of all turns.
 fn ratios() {
     let n = 2_600;
     let x = points(n);
@@ -106,10 +105,28 @@ fn ratios() {
     }
 }
 
+/// What `run` takes of the processors' time, so that what else the machine does hardly counts.
 fn time(run: impl FnOnce()) -> Duration {
-    let start = Instant::now();
+    let start = processor_time();
     run();
-    start.elapsed()
+    processor_time() - start
+}
+
+/// What all processors together have spent on this process.
+#[cfg(unix)]
+fn processor_time() -> Duration {
+    let now = rustix::time::clock_gettime(rustix::time::ClockId::ProcessCPUTime);
+    Duration::new(
+        u64::try_from(now.tv_sec).unwrap_or_default(),
+        u32::try_from(now.tv_nsec).unwrap_or_default(),
+    )
+}
+
+/// Time on the clock, where the system's count of processor time is not known.
+#[cfg(not(unix))]
+fn processor_time() -> Duration {
+    static START: std::sync::OnceLock<std::time::Instant> = std::sync::OnceLock::new();
+    START.get_or_init(std::time::Instant::now).elapsed()
 }
 
 /// Whether the waves train, which takes one product more: that by their features.

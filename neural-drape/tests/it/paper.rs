@@ -9,7 +9,7 @@ use crate::steps::{norm, of_weights, recorded};
 
 /// A preset with so few samples that its whole schedule takes a second.
 fn light(preset: &str) -> DrapeConfig {
-    let mut config = DrapeConfig::named(preset).unwrap();
+    let mut config = DrapeConfig::named(preset).expect("a known preset");
     config.sampling.n_samples = 20;
     config.sampling.max_samples = 20;
     config
