@@ -212,12 +212,6 @@ fn relative_difference(a: &[f32], b: &[f32]) -> f32 {
 
 /// Output and dL/dθ by dfdx's own operations.
 fn plain_dfdx(network: &Network, weights: &VertexData<Vector3>) -> (Vec<f32>, Gradients<f32, Cpu>) {
-    let device = Cpu::default();
-    let matrix =
-        |entries: Vec<f32>, n_columns: usize| -> Tensor<(usize, usize), f32, Cpu, NoneTape> {
-            let shape = (entries.len() / n_columns, n_columns);
-            device.tensor_from_vec(entries, shape)
-        };
     let Evaluation { map, masks, .. } = &*lock(&network.evaluation);
     let n = network.initial.len();
     let points = matrix(
@@ -257,13 +251,7 @@ fn plain_dfdx(network: &Network, weights: &VertexData<Vector3>) -> (Vec<f32>, Gr
     let mut tensors_left = tensors.iter().copied();
     let mut sum = matrix(vec![0.0; 3 * n], 3).leaky_traced();
     for (mask, layers) in masks.iter().zip(&map.networks) {
-        // The first features that the network is made for, each by its α.
-        let n_seen = mask.n_features();
-        let mut masked = vec![0.0; n_features * n_seen];
-        for (k, alpha) in mask.alpha().iter().enumerate() {
-            masked[k * (n_seen + 1)] = *alpha;
-        }
-        let mut values = features().matmul(matrix(masked, n_seen));
+        let mut values = features().matmul(selection(mask, n_features));
         for l in 0..layers.len() {
             let (weight, bias) = tensors_left.next().zip(tensors_left.next()).unwrap();
             let ones = matrix(vec![1.0; n], 1).leaky_traced();
@@ -274,16 +262,30 @@ fn plain_dfdx(network: &Network, weights: &VertexData<Vector3>) -> (Vec<f32>, Gr
         }
         sum = sum + values * mask.output();
     }
-    let features = sum;
-    let output = features.as_vec();
+    let output = sum.as_vec();
     let unit = map.output_unit();
     let weights = weights
         .iter()
         .flat_map(|w| [w.x, w.y, w.z].map(|d| (d * unit) as f32));
-    let gradients = (features * matrix(weights.collect(), 3))
+    let gradients = (sum * matrix(weights.collect(), 3))
         .sum::<(), _>()
         .backward();
     (output, gradients)
+}
+
+fn matrix(entries: Vec<f32>, n_columns: usize) -> Tensor<(usize, usize), f32, Cpu, NoneTape> {
+    let shape = (entries.len() / n_columns, n_columns);
+    Cpu::default().tensor_from_vec(entries, shape)
+}
+
+/// What takes from `n_features` features the first ones, for which a network is made, each by its α.
+fn selection(mask: &Mask, n_features: usize) -> Tensor<(usize, usize), f32, Cpu, NoneTape> {
+    let n_seen = mask.n_features();
+    let mut entries = vec![0.0; n_features * n_seen];
+    for (k, alpha) in mask.alpha().iter().enumerate() {
+        entries[k * (n_seen + 1)] = *alpha;
+    }
+    matrix(entries, n_seen)
 }
 
 #[test]
