@@ -16,6 +16,7 @@ mod output;
 mod profile;
 mod progress;
 mod requirement;
+mod study;
 mod suite;
 mod usage;
 mod words;

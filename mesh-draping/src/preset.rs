@@ -32,11 +32,12 @@ pub struct Preset {
 /// A name, and what it stands for.
 type Named = (&'static str, fn() -> Preset);
 
-const PRESETS: [Named; 4] = [
+const PRESETS: [Named; 5] = [
     ("standard", Preset::standard),
     ("quick", Preset::quick),
     ("network", Preset::network),
     ("paper", Preset::paper),
+    ("authors", Preset::authors),
 ];
 
 impl Preset {
@@ -63,6 +64,14 @@ impl Preset {
         }
     }
 
+    /// The authors' program ([`DrapeConfig::authors`]), its initial deformation included.
+    pub fn authors() -> Self {
+        Self {
+            initial: InitialMethod::Paper,
+            ..Self::of_drape("authors", DrapeConfig::authors())
+        }
+    }
+
     fn of_drape(name: &str, drape: DrapeConfig) -> Self {
         Self {
             name: name.to_owned(),
@@ -82,10 +91,14 @@ impl Preset {
         let mut presets: Vec<Self> = studies
             .map(|study| Self::of_drape(study.name, study.config))
             .collect();
-        presets.push(Self {
-            initial: InitialMethod::Affine,
-            ..Self::of_drape("study-affine-start", DrapeConfig::study())
-        });
+        let starts = [
+            ("study-biharmonic-start", InitialMethod::Paper),
+            ("study-affine-start", InitialMethod::Affine),
+        ];
+        presets.extend(starts.map(|(name, initial)| Self {
+            initial,
+            ..Self::of_drape(name, DrapeConfig::study())
+        }));
         presets
     }
 
@@ -306,6 +319,7 @@ mod tests {
         let initial = |name: &str| Preset::named(name).unwrap().initial;
         assert_eq!(initial("standard"), InitialMethod::Tried);
         assert_eq!(initial("paper"), InitialMethod::Paper);
+        assert_eq!(initial("authors"), InitialMethod::Paper);
         assert_eq!(initial("study"), InitialMethod::Tried);
         assert_eq!(initial("study-affine-start"), InitialMethod::Affine);
     }

@@ -11,6 +11,7 @@ mod real_pair;
 mod regions;
 mod seams;
 mod studio;
+mod study;
 mod suite;
 mod support;
 mod transfer;

@@ -116,6 +116,15 @@ impl Manifest {
         })
     }
 
+    /// The same pairs with these settings and seeds.
+    pub(super) fn with_methods(self, methods: &[Method], seeds: &[u64]) -> Self {
+        Self {
+            methods: methods.to_vec(),
+            seeds: seeds.to_vec(),
+            ..self
+        }
+    }
+
     pub(super) fn parse(text: &str, folder: &Path, data: Option<PathBuf>) -> anyhow::Result<Self> {
         let file: File = toml::from_str(text).map_err(|error| {
             let before = error

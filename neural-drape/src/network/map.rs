@@ -7,7 +7,7 @@ use super::block::{Block, BLOCK_SIZE};
 use super::encoding::Waves;
 use super::layer::Layer;
 
-/// Where the network sends points: `p ↦ p + r · mlp(encoding((p − center) / r))`.
+/// Where the network sends points: `p ↦ p + r · mlp(encoding((p − center) / r))`, or the sum of several such offsets.
 ///
 /// r is half the longest side of the shape the network was made for. Points outside that shape are moved too; what
 /// the network does far from it is not controlled.
@@ -19,8 +19,8 @@ pub struct NetworkMap {
     pub(crate) output_scale: f64,
     /// Waves of the encoding; those past the first layer's inputs are hidden.
     pub(crate) waves: Waves,
-    /// The layers, first to last; a ReLU stands between them.
-    pub(crate) layers: Vec<Layer>,
+    /// The layers of each network, first to last; a ReLU stands between them. What the networks put out is summed.
+    pub(crate) networks: Vec<Vec<Layer>>,
 }
 
 impl NetworkMap {
@@ -32,10 +32,9 @@ impl NetworkMap {
                 let mut block = Block::new(
                     chunk.iter().map(|p| to_input(&self.frame, p)).collect(),
                     &self.waves,
-                    &self.layers,
                 );
-                block.encode(&self.waves, self.layers[0].n_inputs());
-                block.forward(&self.layers);
+                block.encode(&self.waves, self.n_revealed());
+                block.forward(&self.networks);
                 chunk
                     .iter()
                     .zip(block.outputs().collect::<Vec<_>>())
@@ -56,22 +55,33 @@ impl NetworkMap {
         }
     }
 
-    /// Whether every layer takes what the one before gives, from the features to three coordinates.
+    /// How many features of a point some network sees.
+    pub(super) fn n_revealed(&self) -> usize {
+        let n_inputs = self.networks.iter().map(|layers| layers[0].n_inputs());
+        n_inputs.max().unwrap_or(3)
+    }
+
+    /// Whether there is a network, and in each every layer takes what the one before gives, from the features to three
+    /// coordinates.
     pub(crate) fn is_consistent(&self) -> bool {
+        self.frame.scale > 0.0
+            && !self.networks.is_empty()
+            && self.networks.iter().all(|layers| self.is_network(layers))
+    }
+
+    fn is_network(&self, layers: &[Layer]) -> bool {
         let fits = |layer: &Layer| {
             !layer.bias.is_empty()
                 && !layer.weight.is_empty()
                 && layer.weight.len().is_multiple_of(layer.bias.len())
         };
-        let (Some(first), Some(last)) = (self.layers.first(), self.layers.last()) else {
+        let (Some(first), Some(last)) = (layers.first(), layers.last()) else {
             return false;
         };
-        self.frame.scale > 0.0
-            && self.layers.iter().all(fits)
+        layers.iter().all(fits)
             && (3..=self.waves.n_features()).contains(&first.n_inputs())
             && last.n_outputs() == 3
-            && self
-                .layers
+            && layers
                 .windows(2)
                 .all(|pair| pair[0].n_outputs() == pair[1].n_inputs())
     }

@@ -19,9 +19,10 @@ use crate::setting::Setting;
 use crate::{DrapeError, Parametrization, StateReader, StateWriter};
 
 /// Positions as a network of the initial positions: `x = x₀ + r · mlp(encoding(x₀ / r))`, r half the longest side; or of
-/// those of the source, y: `x = x₀ + r · mlp(encoding(y / r_y))` ([`NetworkInput::Rest`]).
+/// those of the source, y: `x = x₀ + r · mlp(encoding(y / r_y))` ([`NetworkInput::Rest`]); or as the sum of several such
+/// offsets ([`super::Networks`]).
 ///
-/// The last layer starts at zero, so the network starts exactly at the initial positions, and equal positions that are seen
+/// Last layers start at zero, so the network starts exactly at the initial positions, and equal positions that are seen
 /// move alike. dfdx owns the parameters, the tape and Adam (betas 0.9 and 0.999, ε 1e-8); the layers are one fused
 /// operation on its tape. Inside all is f32; the same seed gives the same bits whatever the thread count.
 ///
@@ -55,19 +56,21 @@ impl Network {
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
         let waves = Waves::draw(&config.encoding, &mut rng);
         let is_trainable = config.encoding.is_trainable();
-        let mut sizes = vec![config.width; config.n_hidden_layers + 2];
-        sizes[0] = waves.n_features();
-        sizes[config.n_hidden_layers + 1] = 3;
-        let parameters = Parameters::draw(&sizes, is_trainable.then_some(&waves), &mut rng);
+        let masks = Mask::all_at(&config.encoding, &waves, 0.0);
+        let sizes = masks.iter().map(|mask| {
+            let hidden = vec![config.width; config.n_hidden_layers];
+            [vec![mask.n_features()], hidden, vec![3]].concat()
+        });
+        let trained = is_trainable.then_some(&waves);
+        let parameters = Parameters::draw(&sizes.collect::<Vec<_>>(), trained, &mut rng);
 
-        let mask = Mask::at(&config.encoding, &waves, 0.0);
         let mut map = NetworkMap {
             frame: UnitFrame::of(Aabb::of(initial)),
             output_scale: config.output_scale,
             waves,
-            layers: Vec::new(),
+            networks: Vec::new(),
         };
-        parameters.copy_into(&mut map, &mask);
+        parameters.copy_into(&mut map, &masks);
         let inputs = inputs(shapes, config.input);
         let mut pass = Pass::new(&inputs, &map, is_trainable);
         pass.forward(&map);
@@ -76,8 +79,8 @@ impl Network {
             initial: initial.clone(),
             positions: initial.clone(),
             parameters,
-            adam: Adam::new(),
-            evaluation: Arc::new(Mutex::new(Evaluation { map, pass, mask })),
+            adam: Adam::new(masks.len()),
+            evaluation: Arc::new(Mutex::new(Evaluation { map, pass, masks })),
             progress: 0.0,
             is_displaced: config.input != NetworkInput::Initial,
         })
@@ -95,9 +98,9 @@ impl Network {
 
     /// Evaluates the network at its present parameters and progress.
     fn evaluate(&mut self) {
-        let Evaluation { map, pass, mask } = &mut *lock(&self.evaluation);
-        *mask = Mask::at(&self.encoding, &map.waves, self.progress);
-        self.parameters.copy_into(map, mask);
+        let Evaluation { map, pass, masks } = &mut *lock(&self.evaluation);
+        *masks = Mask::all_at(&self.encoding, &map.waves, self.progress);
+        self.parameters.copy_into(map, masks);
         pass.forward(map);
         let moved = self
             .positions
@@ -131,8 +134,9 @@ impl Parametrization for Network {
         learning_rate: f64,
     ) -> Result<(), DrapeError> {
         let stepped = self.gradients(gradient).and_then(|mut gradients| {
+            let masks = &lock(&self.evaluation).masks;
             self.adam
-                .step(&mut self.parameters, &mut gradients, learning_rate)
+                .step(&mut self.parameters, masks, &mut gradients, learning_rate)
         });
         stepped.map_err(|_| DrapeError::OutOfMemory)?;
         self.evaluate();

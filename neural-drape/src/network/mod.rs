@@ -3,7 +3,7 @@
 //! | file | what |
 //! |---|---|
 //! | `config` | depth, width, encoding and the schedule that reveals it |
-//! | `encoding`, `draw` | the features γ(x) of a point: waves, and how they are drawn |
+//! | `encoding`, `wave`, `draw` | the features γ(x) of a point: waves, their sines and cosines, and how they are drawn |
 //! | `mask` | the mask α of the progressive encoding: the first layer sees α ⊙ γ(x) |
 //! | `layer` | a fully connected layer and the ReLU, forward and backward |
 //! | `block`, `pass` | all layers over all points, forward and backward, in fixed groups |
@@ -28,8 +28,9 @@ mod mlp;
 mod pass;
 #[cfg(feature = "network")]
 mod tape;
+mod wave;
 
-pub use config::{Encoding, Frequencies, NetworkConfig, NetworkInput, Reveal};
+pub use config::{Encoding, Frequencies, NetworkConfig, NetworkInput, Networks, Reveal};
 pub use map::NetworkMap;
 #[cfg(feature = "network")]
 pub use mlp::Network;

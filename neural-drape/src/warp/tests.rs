@@ -165,7 +165,10 @@ fn warp_with_map() -> Warp {
     let map = NetworkMap {
         frame: UnitFrame::of(Aabb::of(&rest)),
         output_scale: 0.5,
-        layers: vec![layer(waves.n_features(), 2), layer(2, 3)],
+        networks: vec![
+            vec![layer(waves.n_features(), 2), layer(2, 3)],
+            vec![layer(5, 4), layer(4, 3)],
+        ],
         waves,
     };
     Warp::from_parts(warp.extension, Some(map), warp.surface)
