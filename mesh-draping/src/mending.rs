@@ -51,17 +51,6 @@ impl Mending {
             cost: cost(pair, drape, &x, &off),
             positions: x,
         };
-        if std::env::var("XP").is_ok() {
-            eprintln!(
-                "mend round {} cost {:.3} hanging {}",
-                self.n_rounds,
-                now.cost,
-                off.iter()
-                    .flatten()
-                    .filter(|d| **d > 0.012 * pair.target.judged().bounds().longest_side())
-                    .count()
-            );
-        }
         if let Some(before) = self.before.take().filter(|before| before.cost <= now.cost) {
             self.n_rounds = N_ROUNDS;
             return move_to(drape, &now.positions, &before.positions);

@@ -1,7 +1,7 @@
 //! The presets `paper` and `authors`, step by step: what docs/paper.md says of them.
 
 use mesh_core::{shapes, Landmark, Point3, Vector3, VertexId};
-use neural_drape::network::{Encoding, Frequencies, NetworkConfig, Networks, Reveal};
+use neural_drape::network::{Encoding, Frequencies, NetworkConfig, NetworkInput, Networks, Reveal};
 use neural_drape::{AngleReference, Descent, DrapeConfig, ParametrizationConfig, Weights};
 
 use crate::setup::{on_ellipsoid, Pair};
@@ -123,6 +123,7 @@ fn the_networks_are_those_of_the_paper_and_of_the_authors() {
     };
     let network = |until, networks, output_scale| {
         ParametrizationConfig::Network(NetworkConfig {
+            input: NetworkInput::Initial,
             n_hidden_layers: 4,
             width: 256,
             encoding: Encoding::Progressive {
