@@ -78,33 +78,7 @@ impl InnerSurface {
 pub struct HiddenSurfaces {
     /// Those of the source, largest first: `hidden:1`, `hidden:2` and so on.
     pub inner: Vec<InnerSurface>,
-    /// Length of the edges that bound the triangles of these vertices inside the surface, over the root of the area of those.
-fn rim(source: &Source, vertices: &[VertexId]) -> f64 {
-    let (triangulation, rest) = (source.triangulation(), source.rest());
-    let mut is_in = VertexData::new(rest.len(), false);
-    vertices.iter().for_each(|&v| is_in[v] = true);
-    let triangles = triangulation.triangles();
-    let is_inside = |t: &u32| triangles[*t as usize].iter().all(|&v| is_in[v]);
-    let bounds = |e: &usize| {
-        let sides = triangulation.edge_triangles(*e);
-        sides.len() > 1 && sides.iter().filter(|t| is_inside(t)).count() == 1
-    };
-    let edges = triangulation.edges();
-    let length: f64 = (0..edges.len())
-        .filter(bounds)
-        .map(|e| (rest[edges[e][0]] - rest[edges[e][1]]).norm())
-        .sum();
-    let areas = (0..triangles.len() as u32).filter(is_inside);
-    let areas = areas.map(|t| measure::triangle_area(triangles[t as usize].map(|v| rest[v])));
-    let area = areas.sum::<f64>();
-    if area > 0.0 {
-        length / area.sqrt()
-    } else {
-        f64::INFINITY
-    }
-}
-
-/// Share of the target's area that no ray from outside reaches, 0..=1; 0 for a cloud.
+    /// Share of the target's area that no ray from outside reaches, 0..=1; 0 for a cloud.
     pub of_target: f64,
 }
 
@@ -220,6 +194,32 @@ pub fn inner_surfaces(source: &Source) -> Vec<InnerSurface> {
     }
     found.sort_by(|a, b| b.share.total_cmp(&a.share));
     found
+}
+
+/// Length of the edges that bound the triangles of these vertices inside the surface, over the root of the area of those.
+fn rim(source: &Source, vertices: &[VertexId]) -> f64 {
+    let (triangulation, rest) = (source.triangulation(), source.rest());
+    let mut is_in = VertexData::new(rest.len(), false);
+    vertices.iter().for_each(|&v| is_in[v] = true);
+    let triangles = triangulation.triangles();
+    let is_inside = |t: &u32| triangles[*t as usize].iter().all(|&v| is_in[v]);
+    let bounds = |e: &usize| {
+        let sides = triangulation.edge_triangles(*e);
+        sides.len() > 1 && sides.iter().filter(|t| is_inside(t)).count() == 1
+    };
+    let edges = triangulation.edges();
+    let length: f64 = (0..edges.len())
+        .filter(bounds)
+        .map(|e| (rest[edges[e][0]] - rest[edges[e][1]]).norm())
+        .sum();
+    let areas = (0..triangles.len() as u32).filter(is_inside);
+    let areas = areas.map(|t| measure::triangle_area(triangles[t as usize].map(|v| rest[v])));
+    let area = areas.sum::<f64>();
+    if area > 0.0 {
+        length / area.sqrt()
+    } else {
+        f64::INFINITY
+    }
 }
 
 /// Share of the target's area that no ray from outside reaches; 0 for a cloud.
