@@ -9,7 +9,6 @@ use neural_drape::{
 
 use crate::ending::{decided_overlap, left_out, repaired};
 use crate::explain::Counted;
-use crate::mending::Mending;
 use crate::stages::{DRAPING, REFINING};
 use crate::stand_in::StandIn;
 use crate::start::Start;
@@ -49,7 +48,6 @@ pub struct Draping {
     /// Where it started, in the target's coordinates.
     initial: Positions,
     drape: Drape,
-    mending: Mending,
     /// What is draped in the place of the source, as long as it is.
     stand_in: Option<StandIn>,
     /// Iterations of the stand-in, once the source itself is draped.
@@ -118,7 +116,6 @@ impl Draping {
             truth,
             regions,
             drape,
-            mending: Mending::default(),
             stand_in,
             notes,
             history: History::default(),
@@ -135,11 +132,7 @@ impl Draping {
     pub fn step(&mut self) -> Result<Option<StepReport>, Error> {
         let stage = self.stage();
         let drape = &mut self.drape;
-        let step = self.stages.time(stage, || drape.step())?;
-        if drape.is_finished() && step.is_some() {
-            self.mend()?;
-        }
-        let step = match step {
+        let step = match self.stages.time(stage, || drape.step())? {
             Some(step) => step,
             None if self.stand_in.is_some() => {
                 self.refine()?;
@@ -163,17 +156,6 @@ impl Draping {
         }
     }
 
-    /// Looks for what hangs in a drape whose iterations are done, and gives it more where something does.
-    fn mend(&mut self) -> Result<(), Error> {
-        if Mending::is_asked_for(&self.preset) {
-            let pair = self.stand_in.as_ref().map_or(&self.pair, |s| &s.pair);
-            let (mending, preset, drape) = (&mut self.mending, &self.preset, &mut self.drape);
-            let look = || mending.look_at(pair, preset, drape);
-            self.stages.time("mending", look)?;
-        }
-        Ok(())
-    }
-
     /// The stand-in is draped: it carries the source, which is draped itself from now on.
     fn refine(&mut self) -> Result<(), Error> {
         let end = self.last_stage();
@@ -193,7 +175,6 @@ impl Draping {
         let carried = stand_in.carry(&end.positions);
         self.n_before = self.drape.n_iterations();
         self.n_after = 0;
-        self.mending = Mending::default();
         let (pair, regions) = (&self.pair, &self.regions);
         self.drape = self.stages.time_with_parts(REFINING, |parts| {
             parts.time("set-up", || set_up(pair, config, &carried, regions))

@@ -238,3 +238,26 @@ fn hidden_share(target: &Target) -> f64 {
         .sum();
     hidden / areas.iter().sum::<f64>().max(f64::MIN_POSITIVE)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A large lining is carried along by itself where it is a pocket, not where it is the walls of a groin.
+    #[test]
+    fn a_crevice_is_draped() {
+        let lining = |rim| InnerSurface {
+            vertices: Vec::new(),
+            share: 0.03,
+            rim,
+            kind: InnerKind::Lining,
+        };
+        let surfaces = HiddenSurfaces {
+            inner: vec![lining(6.0), lining(1.5)],
+            of_target: 0.0,
+        };
+        let treatments: Vec<Treatment> =
+            surfaces.inner.iter().map(|i| surfaces.unasked(i)).collect();
+        assert_eq!(treatments, [Treatment::Draped, Treatment::Free]);
+    }
+}

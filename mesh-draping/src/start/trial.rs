@@ -1,13 +1,16 @@
 //! A short drape of a stand-in, and what it came to.
 
-use mesh_core::Positions;
+use mesh_core::sampling::SeededRng;
+use mesh_core::{Point3, Positions, SurfacePoint, TriangleBvh};
 use mesh_loss::Overlap;
 use mesh_metrics::{dirichlet_unit_area, HAUSDORFF_WEIGHT};
-use neural_drape::{OverlapMode, Regions};
+use neural_drape::{Drape, OverlapMode, Regions};
 
 use crate::draping::set_up;
-use crate::{fit, Error, Pair, Preset};
+use crate::{Error, Pair, Preset};
 
+/// Places on the target that tell how much of it is reached.
+const N_SAMPLES: usize = 4000;
 /// The share of the distances either way that counts as worst.
 const WORST: f64 = 0.01;
 /// What leaving out a whole shape costs, in the units of the distortion.
@@ -108,8 +111,8 @@ impl Trial {
         while drape.step()?.is_some() {}
         let x = drape.positions();
         let size = pair.target.judged().bounds().longest_side();
-        let (to_target, mesh_left_out) = counted(&fit::to_target(pair, &drape, &x));
-        let (to_mesh, target_left_out) = counted(&fit::to_mesh(pair, &drape, &x));
+        let (to_target, mesh_left_out) = to_target(pair, &drape, &x);
+        let (to_mesh, target_left_out) = to_mesh(pair, &drape, &x);
         let triangulation = pair.source.triangulation();
         let energy = dirichlet_unit_area(triangulation, pair.source.rest(), &x);
         Ok(Self {
@@ -123,11 +126,49 @@ impl Trial {
     }
 }
 
-/// The distances that count, and the share of places that are left out.
-fn counted(places: &[Option<f64>]) -> (Vec<f64>, f64) {
-    let kept: Vec<f64> = places.iter().flatten().copied().collect();
-    let share = 1.0 - kept.len() as f64 / places.len().max(1) as f64;
-    (kept, share)
+/// Distances of the middles of the triangles from the target, and the share of them that was left out.
+fn to_target(pair: &Pair, drape: &Drape, x: &Positions) -> (Vec<f64>, f64) {
+    let target = pair.target.draped_over();
+    let triangulation = pair.source.triangulation();
+    let middles: Vec<Point3> = triangulation
+        .corners(x)
+        .map(|[a, b, c]| Point3::from((a.coords + b.coords + c.coords) / 3.0))
+        .collect();
+    let attraction = drape.attraction();
+    let exceeds = drape.overlap().mesh_exceeds;
+    let is_left_out = |row: usize, hit: &SurfacePoint| {
+        let corners = &triangulation.triangles()[row];
+        corners.iter().all(|&v| attraction[v] == 0.0)
+            || exceeds && target.is_on_boundary(&hit.location)
+    };
+    counted(&target.closest_points(&middles), is_left_out)
+}
+
+/// Distances of places of the target from the mesh, and the share of them that was left out.
+fn to_mesh(pair: &Pair, drape: &Drape, x: &Positions) -> (Vec<f64>, f64) {
+    let target = pair.target.draped_over();
+    let triangulation = pair.source.triangulation();
+    let samples = target.sample(N_SAMPLES, &mut SeededRng::new(0));
+    let points: Vec<Point3> = samples.iter().map(|s| s.point).collect();
+    let bvh = TriangleBvh::new(triangulation.corners(x).collect());
+    let exceeds = drape.overlap().target_exceeds;
+    let is_left_out = |_, hit: &SurfacePoint| {
+        let corners = &triangulation.triangles()[hit.location.row() as usize];
+        exceeds && corners.iter().any(|&v| triangulation.is_boundary_vertex(v))
+    };
+    counted(&bvh.closest_points(&points), is_left_out)
+}
+
+/// Distances of the places that are not left out, and the share of those that are.
+fn counted(
+    hits: &[SurfacePoint],
+    is_left_out: impl Fn(usize, &SurfacePoint) -> bool,
+) -> (Vec<f64>, f64) {
+    let kept = hits.iter().enumerate();
+    let kept = kept.filter(|(row, hit)| !is_left_out(*row, hit));
+    let distances: Vec<f64> = kept.map(|(_, hit)| hit.distance_squared.sqrt()).collect();
+    let share = 1.0 - distances.len() as f64 / hits.len().max(1) as f64;
+    (distances, share)
 }
 
 /// Mean of the largest distances; 0 of none.

@@ -338,3 +338,39 @@ fn a_first_step_moves_every_weight_by_the_learning_rate_and_a_second_like_it_aga
         }
     }
 }
+
+/// Vertices that start at one place stay there to a network of the initial positions, and part to one of the rest shape.
+#[test]
+fn what_starts_laid_on_each_other_parts_by_its_place_at_rest() {
+    let rest = sphere();
+    let initial = rest.map(|p| Point3::new(p.x, p.y, p.z.abs()));
+    let outwards = rest.map(|p| Vector3::new(0.0, 0.0, -p.z) / rest.len() as f64);
+    let gap = |input| {
+        let config = NetworkConfig {
+            input,
+            ..NetworkConfig::guide()
+        };
+        let shapes = Shapes {
+            rest: &rest,
+            initial: &initial,
+        };
+        let mut network = Network::new(shapes, &config, 1).unwrap();
+        assert_eq!(network.positions(), &initial);
+        for _ in 0..20 {
+            network.descend(&outwards, 1e-2).unwrap();
+        }
+        let x = network.positions();
+        let (above, below) = (mean_z(x, &rest, 1.0), mean_z(x, &rest, -1.0));
+        assert!(network.network().is_some() == (input == NetworkInput::Initial));
+        (above - below).abs()
+    };
+    assert!(gap(NetworkInput::Initial) < 1e-3);
+    assert!(gap(NetworkInput::Rest) > 0.1);
+}
+
+/// Mean z of the vertices that are on this side at rest.
+fn mean_z(x: &Positions, rest: &Positions, side: f64) -> f64 {
+    let on_side = x.iter().zip(rest).filter(|(_, r)| r.z * side > 0.5);
+    let (sum, n) = on_side.fold((0.0, 0), |(sum, n), (p, _)| (sum + p.z, n + 1));
+    sum / f64::from(n)
+}
