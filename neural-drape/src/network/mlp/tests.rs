@@ -219,7 +219,7 @@ fn plain_dfdx(network: &Network, weights: &VertexData<Vector3>) -> (Vec<f32>, Gr
         network
             .initial
             .iter()
-            .flat_map(|p| map.to_input(p))
+            .flat_map(|p| to_input(&map.frame, p))
             .collect(),
         3,
     );
@@ -244,7 +244,7 @@ fn plain_dfdx(network: &Network, weights: &VertexData<Vector3>) -> (Vec<f32>, Gr
             let mut entries = vec![0.0; n * n_features];
             let mut encoder = map.waves.encoder();
             for (p, features) in network.initial.iter().zip(entries.chunks_mut(n_features)) {
-                encoder.encode(&map.to_input(p), features, None);
+                encoder.encode(&to_input(&map.frame, p), features, None);
             }
             matrix(entries, n_features).leaky_traced()
         }
@@ -295,7 +295,7 @@ fn a_network_that_comes_in_late_steps_as_one_that_begins() {
     // in which the network was hidden, it would be three times as far.
     let x0 = sphere();
     let config = configs()[3];
-    let mut network = Network::new(&x0, &config, 3).unwrap();
+    let mut network = Network::new(Shapes::at_rest(&x0), &config, 3).unwrap();
     let last_of = |network: &Network, k: usize| {
         let tensors = network.parameters.tensors();
         let mut entries = Vec::new();
@@ -322,7 +322,7 @@ fn a_first_step_moves_every_weight_by_the_learning_rate_and_a_second_like_it_aga
     // Adam, its moments corrected: m / √v is 1 in the first step, and in all that have the same gradient.
     let x0 = sphere();
     for config in configs() {
-        let mut network = Network::new(&x0, &config, 3).unwrap();
+        let mut network = Network::new(Shapes::at_rest(&x0), &config, 3).unwrap();
         let gradient = field(&x0);
         for n_steps in 1..=2 {
             network.descend(&gradient, 1e-5).unwrap();
