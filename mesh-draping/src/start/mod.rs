@@ -73,7 +73,9 @@ impl Start {
             .filter(|led| led.trial.is_better_start_than(&own.trial));
         let chosen = better.min_by(cheapest).unwrap_or(&own).trial.clone();
         let best = led.iter().chain([&own]).min_by(cheapest).unwrap_or(&own);
-        let guided = (cost(&best) > POOR)
+        // Without landmarks a smooth map drifts, and a rigid body is none to it.
+        let can_lead = pair.landmarks.len() >= ENOUGH_TO_STAND && regions.is_none();
+        let guided = (can_lead && cost(&best) > POOR)
             .then(|| Trial::guided(&stand_in.pair, preset, &regions, &best.start));
         let guided = guided.and_then(Result::ok);
         let taken = guided.filter(|guided| guided.is_better_start_than(&chosen));
