@@ -85,7 +85,7 @@ fn ratios() {
         NetworkConfig::paper(),
     ];
     for (config, (name, width, waves)) in configs.into_iter().zip(PRODUCTS) {
-        let mut network = Network::new(&x, &config, 0).expect("presets are valid");
+        let mut network = Network::new(Shapes::at_rest(&x), &config, 0).expect("presets are valid");
         network
             .set_progress(1.0)
             .expect("a network is always ready");
