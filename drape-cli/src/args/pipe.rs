@@ -6,8 +6,9 @@ use std::path::{Path, PathBuf};
 use anyhow::bail;
 use mesh_core::io::{read_mesh, read_stream, Format, MeshFile};
 use mesh_core::Positions;
+use mesh_draping::Source;
 
-use crate::output::{check_mesh, say};
+use crate::output::{check_distinct, check_mesh, say};
 
 /// What stands for standard input or output.
 const PIPE: &str = "-";
@@ -60,6 +61,14 @@ pub(crate) fn say_beside(output: &Path, text: &str) -> io::Result<()> {
     say(text)
 }
 
+/// That a file was written; nothing where it went to standard output.
+pub(crate) fn wrote(output: &Path) -> String {
+    match is_pipe(output) {
+        true => String::new(),
+        false => format!("wrote {}\n", output.display()),
+    }
+}
+
 impl PipeArgs {
     /// Refuses a format without a pipe, and more than one mesh from standard input.
     pub(crate) fn check(self, inputs: &[&Path], output: Option<&Path>) -> anyhow::Result<()> {
@@ -74,12 +83,13 @@ impl PipeArgs {
         Ok(())
     }
 
-    /// Refuses a mesh that cannot be written, as far as its name tells.
-    pub(crate) fn check_output(self, output: &Path) -> anyhow::Result<()> {
-        match is_pipe(output) {
-            true => Ok(()),
-            false => check_mesh(output),
+    /// Refuses a mesh that cannot be written, as far as its name tells, or that would replace an input.
+    pub(crate) fn check_output(self, output: &Path, inputs: &[&Path]) -> anyhow::Result<()> {
+        if is_pipe(output) {
+            return Ok(());
         }
+        check_mesh(output)?;
+        check_distinct(output, inputs)
     }
 
     /// Reads a mesh, from standard input where `-` is given. `output` is where the command writes, if it does.
@@ -99,6 +109,19 @@ impl PipeArgs {
         }
         let format = self.format.map_or(file.format(), Format::from);
         named("stdout", Some(format))
+    }
+
+    /// Writes a source with its vertices at `positions`, to standard output where `-` is given.
+    pub(crate) fn write_source(
+        self,
+        source: &Source,
+        positions: &Positions,
+        output: &Path,
+    ) -> anyhow::Result<()> {
+        match source.file() {
+            Some(file) => self.write(file, &source.spread(positions), output),
+            None => Ok(source.write(output, positions)?),
+        }
     }
 
     /// Writes a file with its vertices at `moved`, to standard output where `-` is given.

@@ -6,8 +6,8 @@ use std::process::ExitCode;
 use mesh_core::Positions;
 use neural_drape::Warp;
 
-use crate::args::{is_pipe, say_beside, MorphArgs, PipeArgs};
-use crate::output::{check_distinct, findings, warn};
+use crate::args::{say_beside, wrote, MorphArgs, PipeArgs};
+use crate::output::{findings, warn};
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
@@ -27,10 +27,8 @@ pub(crate) struct Args {
 
 pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
     args.pipe.check(&[&args.mesh], Some(&args.output))?;
-    args.pipe.check_output(&args.output)?;
-    if !is_pipe(&args.output) {
-        check_distinct(&args.output, &[&args.warp, &args.mesh])?;
-    }
+    args.pipe
+        .check_output(&args.output, &[&args.warp, &args.mesh])?;
     let warp = Warp::load(&args.warp)?;
     let mut file = args.pipe.read(&args.mesh, Some(&args.output))?;
     file.set_morphs(args.morphs.morphs.into());
@@ -39,11 +37,7 @@ pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
     warn(&args.morphs.check_output(&file, &name)?);
     let moved = Positions::from(warp.apply(&file.soup().positions));
     args.pipe.write(&file, &moved, &args.output)?;
-    let wrote = match is_pipe(&args.output) {
-        true => String::new(),
-        false => format!("wrote {}\n", args.output.display()),
-    };
-    let told = format!("moved {} vertices\n{wrote}", moved.len());
+    let told = format!("moved {} vertices\n{}", moved.len(), wrote(&args.output));
     say_beside(&args.output, &told)?;
     Ok(ExitCode::SUCCESS)
 }

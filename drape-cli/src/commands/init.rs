@@ -8,9 +8,9 @@ use mesh_draping::{initial_deformation, Pair};
 use mesh_render::{Gallery, Image, View};
 
 use crate::args::{
-    is_pipe, read_truth, say_beside, InitialArg, Inputs, MorphArgs, PipeArgs, ViewArgs, WeldArgs,
+    read_truth, say_beside, wrote, InitialArg, Inputs, MorphArgs, PipeArgs, ViewArgs, WeldArgs,
 };
-use crate::output::{check_distinct, check_writable, warn};
+use crate::output::{check_writable, warn};
 use crate::usage::Stopwatch;
 use crate::words;
 
@@ -80,10 +80,8 @@ pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
     warn(&warnings);
     let positions = initial.positions;
     let report = pair.judge(&positions, truth.as_ref())?;
-    if let Some(file) = pair.source.file() {
-        args.pipe
-            .write(file, &pair.source.spread(&positions), &args.output)?;
-    }
+    args.pipe
+        .write_source(&pair.source, &positions, &args.output)?;
     if let Some(path) = &args.render {
         picture(args, &pair, &positions)?.save(path)?;
     }
@@ -98,11 +96,8 @@ pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
             serde_json::json!({ "figures": figures, "report": report, "warnings": warnings });
         say_beside(&args.output, &format!("{json:#}\n"))?;
     } else {
-        let wrote = match is_pipe(&args.output) {
-            true => String::new(),
-            false => format!("\nwrote {}\n", args.output.display()),
-        };
-        say_beside(&args.output, &format!("{report}{wrote}"))?;
+        let told = format!("{report}\n{}", wrote(&args.output));
+        say_beside(&args.output, &told)?;
     }
     Ok(ExitCode::SUCCESS)
 }
@@ -125,10 +120,8 @@ fn picture(args: &Args, pair: &Pair, positions: &Positions) -> anyhow::Result<Im
 fn check_outputs(args: &Args) -> anyhow::Result<()> {
     args.pipe
         .check(&[&args.source, &args.target], Some(&args.output))?;
-    args.pipe.check_output(&args.output)?;
-    if !is_pipe(&args.output) {
-        check_distinct(&args.output, &[&args.source, &args.target])?;
-    }
+    args.pipe
+        .check_output(&args.output, &[&args.source, &args.target])?;
     if let Some(path) = &args.render {
         check_writable(path)?;
     }

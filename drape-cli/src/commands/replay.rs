@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use crate::args::{is_pipe, say_beside, PipeArgs};
+use crate::args::{is_pipe, say_beside, wrote, PipeArgs};
 use crate::output::{check_distinct, check_writable};
 use crate::progress::Progress;
 
@@ -23,10 +23,8 @@ pub(crate) struct Args {
 
 pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
     args.pipe.check(&[], Some(&args.output))?;
-    args.pipe.check_output(&args.output)?;
-    let output = Some(&args.output).filter(|path| !is_pipe(path));
-    let outputs = [output, args.warp.as_ref()];
-    for path in outputs.into_iter().flatten() {
+    args.pipe.check_output(&args.output, &[&args.session])?;
+    if let Some(path) = &args.warp {
         check_writable(path)?;
         check_distinct(path, &[&args.session])?;
     }
@@ -45,18 +43,18 @@ pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
         pair.target.path(),
     ];
     let inputs: Vec<&Path> = inputs.into_iter().flatten().collect();
+    let output = Some(&args.output).filter(|path| !is_pipe(path));
+    let outputs = [output, args.warp.as_ref()];
     for path in outputs.into_iter().flatten() {
         check_distinct(path, &inputs)?;
     }
-    if let Some(file) = pair.source.file() {
-        let moved = pair.source.spread(&replayed.draped);
-        args.pipe.write(file, &moved, &args.output)?;
-    }
+    args.pipe
+        .write_source(&pair.source, &replayed.draped, &args.output)?;
     if let Some(path) = &args.warp {
         replayed.warp()?.save(path)?;
     }
     for path in outputs.into_iter().flatten() {
-        say_beside(&args.output, &format!("wrote {}\n", path.display()))?;
+        say_beside(&args.output, &wrote(path))?;
     }
     Ok(ExitCode::SUCCESS)
 }

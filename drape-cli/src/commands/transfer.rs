@@ -11,7 +11,7 @@ use mesh_draping::{Outcome, Stages, Transfer};
 use mesh_render::{Gallery, Image, Page, View, DISTANCE_AT_TOP};
 
 use crate::args::{
-    is_pipe, read_truth, say_beside, Inputs, MorphArgs, PartArgs, PipeArgs, SettingsArgs, ViewArgs,
+    read_truth, say_beside, wrote, Inputs, MorphArgs, PartArgs, PipeArgs, SettingsArgs, ViewArgs,
     WeldArgs,
 };
 use crate::output::{check_distinct, check_writable, warn};
@@ -149,7 +149,6 @@ fn drape(transfer: Transfer) -> anyhow::Result<Outcome> {
 fn check_outputs(args: &Args) -> anyhow::Result<()> {
     args.pipe
         .check(&[&args.source, &args.target], Some(&args.output))?;
-    args.pipe.check_output(&args.output)?;
     let inputs: Vec<&Path> = [
         Some(&args.source),
         Some(&args.target),
@@ -160,12 +159,8 @@ fn check_outputs(args: &Args) -> anyhow::Result<()> {
     .flatten()
     .map(PathBuf::as_path)
     .collect();
-    let outputs = [
-        Some(&args.output).filter(|path| !is_pipe(path)),
-        args.report.as_ref(),
-        args.render.as_ref(),
-        args.warp.as_ref(),
-    ];
+    args.pipe.check_output(&args.output, &inputs)?;
+    let outputs = [&args.report, &args.render, &args.warp];
     for path in outputs.into_iter().flatten() {
         check_writable(path)?;
         check_distinct(path, &inputs)?;
@@ -188,10 +183,8 @@ impl Done<'_> {
     fn write(&self) -> anyhow::Result<()> {
         let Self { args, outcome, .. } = self;
         let source = &outcome.pair.source;
-        if let Some(file) = source.file() {
-            let moved = source.spread(&outcome.draped);
-            args.pipe.write(file, &moved, &args.output)?;
-        }
+        args.pipe
+            .write_source(source, &outcome.draped, &args.output)?;
         if let Some(path) = &args.warp {
             outcome.warp()?.save(path)?;
         }
@@ -289,13 +282,13 @@ impl Done<'_> {
     fn text(&self) -> String {
         let (args, run) = (self.args, &self.outcome);
         let outputs = [
-            Some(&args.output).filter(|path| !is_pipe(path)),
+            Some(&args.output),
             args.warp.as_ref(),
             args.render.as_ref(),
             args.report.as_ref(),
         ];
-        let wrote = |path: &PathBuf| format!("wrote {}\n", path.display());
-        let written: String = outputs.into_iter().flatten().map(wrote).collect();
+        let written = outputs.into_iter().flatten().map(|path| wrote(path));
+        let written: String = written.collect();
         let seams = words::seams(&run.pair.source);
         let seams = seams.map_or_else(String::new, |words| format!("{words}\n"));
         format!(
