@@ -130,13 +130,7 @@ impl<'a> Guide<'a> {
         let size = input.target.bounds().longest_side();
         let graph = SampleGraph::new(input.target, N_SAMPLES);
         Ok(Self {
-            misfits: Misfits::new(
-                input.triangulation,
-                input.rest,
-                input.landmarks,
-                &graph,
-                size,
-            ),
+            misfits: Misfits::new(&input, &graph, size),
             input,
             size,
             graph,

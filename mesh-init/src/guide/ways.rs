@@ -1,6 +1,6 @@
 //! How far landmarks are from each other along either shape.
 
-use mesh_core::{Point3, VertexId};
+use mesh_core::{Landmark, VertexData};
 use mesh_operators::geodesic_distance_unfolded;
 use rayon::prelude::*;
 
@@ -24,27 +24,51 @@ impl LandmarkWays {
     /// # Panics
     /// If a landmark names a vertex that is not there.
     pub fn new(input: GuideInput<'_>) -> Self {
-        let marks = input.landmarks.iter().map(|l| l.source.main_vertex());
-        let marks: Vec<VertexId> = marks.collect();
-        let on_source = |&from: &VertexId| {
-            let distance = geodesic_distance_unfolded(input.triangulation, input.rest, &[from]);
-            marks.iter().map(|&to| distance[to]).collect()
-        };
         let graph = SampleGraph::new(input.target, N_SAMPLES);
-        let places: Vec<Point3> = input.landmarks.iter().map(|l| l.target).collect();
-        let samples: Vec<Option<usize>> = places.iter().map(|p| graph.nearest(p)).collect();
-        let on_target = |from: usize| {
-            let distance = graph.distances(&places[from]);
-            let to = |to: usize| match samples[to] {
+        Ways::new(&input, &graph).between(input.landmarks, &graph)
+    }
+}
+
+/// Lengths of the ways along both shapes from each landmark (row) to everywhere.
+pub(super) struct Ways {
+    /// To each vertex of the source.
+    pub(super) on_source: Vec<VertexData<f64>>,
+    /// To each sample of the target.
+    pub(super) on_target: Vec<Vec<f64>>,
+}
+
+impl Ways {
+    pub(super) fn new(input: &GuideInput<'_>, graph: &SampleGraph) -> Self {
+        let landmarks = input.landmarks.par_iter();
+        let on_source = landmarks.clone().map(|l| {
+            let from = l.source.main_vertex();
+            geodesic_distance_unfolded(input.triangulation, input.rest, &[from])
+        });
+        Self {
+            on_source: on_source.collect(),
+            on_target: landmarks.map(|l| graph.distances(&l.target)).collect(),
+        }
+    }
+
+    /// Those from each of the landmarks to the others.
+    pub(super) fn between(&self, landmarks: &[Landmark], graph: &SampleGraph) -> LandmarkWays {
+        let samples = landmarks.iter().map(|l| graph.nearest(&l.target));
+        let samples: Vec<Option<usize>> = samples.collect();
+        let on_source = self.on_source.iter().map(|distance| {
+            let marks = landmarks.iter().map(|l| l.source.main_vertex());
+            marks.map(|to| distance[to]).collect()
+        });
+        let on_target = self.on_target.iter().enumerate().map(|(from, distance)| {
+            let length = |(to, sample): (usize, &Option<usize>)| match *sample {
                 _ if to == from => 0.0,
                 Some(sample) => distance[sample],
                 None => f64::INFINITY,
             };
-            (0..places.len()).map(to).collect()
-        };
-        Self {
-            on_source: marks.par_iter().map(on_source).collect(),
-            on_target: (0..places.len()).into_par_iter().map(on_target).collect(),
+            samples.iter().enumerate().map(length).collect()
+        });
+        LandmarkWays {
+            on_source: on_source.collect(),
+            on_target: on_target.collect(),
         }
     }
 }
