@@ -1,22 +1,18 @@
 //! Damage to files: the same number, the same damage.
 
-/// A generator of whole numbers: xorshift64*, of which the upper bits count.
-struct Dice(u64);
+use mesh_core::sampling::SeededRng;
+
+/// Whole numbers at random.
+struct Dice(SeededRng);
 
 impl Dice {
     fn new(seed: u64) -> Self {
-        let mut dice = Self(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1);
-        dice.below(2);
-        dice
+        Self(SeededRng::new(seed))
     }
 
     /// From 0 to less than `n`; 0 where `n` is 0.
     fn below(&mut self, n: usize) -> usize {
-        self.0 ^= self.0 >> 12;
-        self.0 ^= self.0 << 25;
-        self.0 ^= self.0 >> 27;
-        let high = self.0.wrapping_mul(0x2545_f491_4f6c_dd1d) >> 33;
-        (high as usize) % n.max(1)
+        (self.0.next_u64() % n.max(1) as u64) as usize
     }
 
     fn byte(&mut self) -> u8 {

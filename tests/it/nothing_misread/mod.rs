@@ -21,6 +21,9 @@ mod messages;
 mod pipes;
 mod read_wrong;
 
+use base64::engine::general_purpose::STANDARD;
+use base64::Engine as _;
+
 use crate::support::{Ended, Workplace};
 use serde_json::{json, Value};
 
@@ -126,20 +129,8 @@ fn gltf_with(
 }
 
 fn data_uri(bytes: &[u8]) -> String {
-    const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    let mut text = String::from("data:application/octet-stream;base64,");
-    for three in bytes.chunks(3) {
-        let bits = (0..3).fold(0, |bits, k| {
-            bits << 8 | u32::from(*three.get(k).unwrap_or(&0))
-        });
-        for k in 0..4 {
-            let digit = DIGITS[(bits >> (18 - 6 * k) & 63) as usize];
-            text.push(if k <= three.len() {
-                char::from(digit)
-            } else {
-                '='
-            });
-        }
-    }
-    text
+    format!(
+        "data:application/octet-stream;base64,{}",
+        STANDARD.encode(bytes)
+    )
 }
