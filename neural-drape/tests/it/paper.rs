@@ -5,7 +5,7 @@ use neural_drape::network::{Encoding, Frequencies, NetworkConfig, NetworkInput, 
 use neural_drape::{AngleReference, Descent, DrapeConfig, ParametrizationConfig, Weights};
 
 use crate::setup::{on_ellipsoid, Pair};
-use crate::steps::{norm, of_weights, recorded};
+use crate::steps::{norm, of_weights, recorded, with_only};
 
 /// A preset with so few samples that its whole schedule takes a second.
 fn light(preset: &str) -> DrapeConfig {
@@ -71,15 +71,11 @@ fn the_paper_keeps_the_angles_of_the_source_and_the_authors_those_of_the_initial
     let mut pair = Pair::new(shapes::icosphere(2));
     pair.initial = pair.rest.map(on_ellipsoid);
     let at_start = |preset: &str| {
-        let mut config = light(preset);
-        let only = Weights {
+        let angles = Weights {
             corner_angle: 1.0,
             ..Weights::ZERO
         };
-        config.stages.truncate(1);
-        config.stages[0].n_iterations = 1;
-        config.stages[0].from = only;
-        config.stages[0].to = only;
+        let config = with_only(light(preset), angles, 1);
         let (log, _) = recorded(&pair, config, Vector3::zeros());
         norm(&log[1].gradient)
     };
@@ -91,15 +87,11 @@ fn the_paper_keeps_the_angles_of_the_source_and_the_authors_those_of_the_initial
 fn samples_of_the_authors_stay_for_100_iterations_and_those_of_the_paper_are_drawn_anew() {
     let pair = Pair::new(shapes::icosphere(1));
     let gradients = |preset: &str| {
-        let mut config = light(preset);
-        let only = Weights {
+        let chamfer = Weights {
             chamfer: 1.0,
             ..Weights::ZERO
         };
-        config.stages.truncate(1);
-        config.stages[0].n_iterations = 201;
-        config.stages[0].from = only;
-        config.stages[0].to = only;
+        let mut config = with_only(light(preset), chamfer, 201);
         config.descent = Descent::Combined;
         let (log, _) = recorded(&pair, config, Vector3::zeros());
         log.into_iter()

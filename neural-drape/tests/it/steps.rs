@@ -100,10 +100,20 @@ pub(crate) fn norm(gradient: &[Vector3]) -> f64 {
 
 /// Only these weights, in one stage.
 pub(crate) fn of_weights(weights: Weights, n_iterations: usize) -> DrapeConfig {
-    let mut config = short("standard", n_iterations);
-    config.stages[0].from = weights;
-    config.stages[0].to = weights;
-    config
+    with_only(short("standard", n_iterations), weights, n_iterations)
+}
+
+/// A run of one stage with these weights alone.
+pub(crate) fn with_only(config: DrapeConfig, weights: Weights, n_iterations: usize) -> DrapeConfig {
+    let stage = Stage {
+        n_iterations,
+        from: weights,
+        to: weights,
+    };
+    DrapeConfig {
+        stages: vec![stage],
+        ..config
+    }
 }
 
 #[test]
