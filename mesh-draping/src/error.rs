@@ -1,10 +1,9 @@
 //! What can go wrong, and where.
 
-use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 use mesh_core::io::{ReadError, WriteError};
-use mesh_core::{Point3, TopologyError};
+use mesh_core::{Point3, PolygonSoup, TopologyError};
 use mesh_init::InitError;
 use mesh_metrics::EvaluateError;
 use neural_drape::{DrapeError, WarpError};
@@ -107,14 +106,15 @@ pub(crate) fn check_extent<'p>(points: impl IntoIterator<Item = &'p Point3>) -> 
 /// A source may have a face this many times: what is measured between its faces grows with the square.
 const MOST_COPIES: usize = 100;
 
-/// Refuses faces of which one is there more often than [`MOST_COPIES`].
-pub(crate) fn check_copies(faces: &[Vec<u32>]) -> Result<(), Error> {
-    let mut n_faces_at: HashMap<u32, usize> = HashMap::new();
+/// Refuses faces of which one is there more often than [`MOST_COPIES`]; they name vertices that are there.
+pub(crate) fn check_copies(soup: &PolygonSoup) -> Result<(), Error> {
+    let faces = &soup.faces;
+    let mut n_faces_at = vec![0usize; soup.positions.len()];
     for &v in faces.iter().flatten() {
-        *n_faces_at.entry(v).or_default() += 1;
+        n_faces_at[v as usize] += 1;
     }
     // Only where very many faces meet at every corner can one be there very many times.
-    let is_crowded = |face: &Vec<u32>| face.iter().all(|v| n_faces_at[v] > MOST_COPIES);
+    let is_crowded = |face: &Vec<u32>| face.iter().all(|&v| n_faces_at[v as usize] > MOST_COPIES);
     let crowded = faces
         .iter()
         .enumerate()

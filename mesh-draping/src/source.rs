@@ -85,7 +85,7 @@ impl Source {
         soup.check().map_err(MeshProblem::from)?;
         let weld = seams.weld(soup);
         check_extent(&weld.soup.positions)?;
-        check_copies(&weld.soup.faces)?;
+        check_copies(&weld.soup)?;
         Self::of_weld(weld)
     }
 

@@ -17,7 +17,7 @@ const LEAST_SHARE: f64 = 2e-3;
 const LINING_SHARE: f64 = 0.02;
 /// A lining is a pocket where its rim is shorter than that of a flat disc of its area, `2 √π √A`: the lining of a mouth has
 /// 1.1 to 3.5, the walls of an armpit, a groin or a fist, which the target has as well, 4.3 to 9.
-const POCKET_RIM: f64 = 2.0 * 1.772_453_850_905_516;
+const POCKET_RIM_SQUARED: f64 = 4.0 * std::f64::consts::PI;
 /// A separate piece of which at least this share is hidden lies inside another: lids hide most of an eyeball.
 const INNER: f64 = 0.5;
 /// Inner surfaces of the target that are at least this large beside the source's are their counterparts.
@@ -68,7 +68,7 @@ impl InnerSurface {
 
     /// Whether it is treated as proposed where nobody says otherwise and the target has nothing like it.
     fn is_clear(&self) -> bool {
-        let is_pocket = self.rim < POCKET_RIM;
+        let is_pocket = self.rim.powi(2) < POCKET_RIM_SQUARED;
         self.kind != InnerKind::Lining || self.share >= LINING_SHARE && is_pocket
     }
 }

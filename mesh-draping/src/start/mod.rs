@@ -71,16 +71,16 @@ impl Start {
         let better = led
             .iter()
             .filter(|led| led.trial.is_better_start_than(&own.trial));
-        let chosen = better.min_by(cheapest).unwrap_or(&own).trial.clone();
+        let chosen = &better.min_by(cheapest).unwrap_or(&own).trial;
         let best = led.iter().chain([&own]).min_by(cheapest).unwrap_or(&own);
         // Without landmarks a smooth map drifts, and a rigid body is none to it.
         let can_lead = pair.landmarks.len() >= ENOUGH_TO_STAND && regions.is_none();
         let guided = (can_lead && cost(&best) > POOR)
             .then(|| Trial::guided(&stand_in.pair, preset, &regions, &best.start));
         let guided = guided.and_then(Result::ok);
-        let taken = guided.filter(|guided| guided.is_better_start_than(&chosen));
-        let taken = taken.unwrap_or(chosen);
-        if taken.positions != own.trial.positions {
+        let guided = guided.filter(|guided| guided.is_better_start_than(chosen));
+        let taken = guided.as_ref().unwrap_or(chosen);
+        if !std::ptr::eq(taken, &own.trial) {
             self.shape.positions = stand_in.carry(&taken.positions);
         }
         self.drape.overlap = taken.overlap;
