@@ -63,7 +63,7 @@ pub use rotation::nearest_rotation;
 pub use rows::Rows;
 pub use soup::PolygonSoup;
 pub use surface::{
-    Denoised, Location, NormalSign, PointCloud, Strays, SurfacePoint, SurfaceSample, SurfelCloud,
+    Denoised, Location, NormalSign, Patches, PointCloud, Strays, SurfacePoint, SurfaceSample, SurfelCloud,
     TargetSurface, TriangleSoup,
 };
 pub use triangulation::{Pieces, Triangulation, TriangulationEdge};
