@@ -63,8 +63,8 @@ pub use rotation::nearest_rotation;
 pub use rows::Rows;
 pub use soup::PolygonSoup;
 pub use surface::{
-    Denoised, Location, NormalSign, Patches, PointCloud, Strays, SurfacePoint, SurfaceSample, SurfelCloud,
-    TargetSurface, TriangleSoup,
+    Denoised, Location, NormalSign, Patches, PointCloud, Strays, SurfacePoint, SurfaceSample,
+    SurfelCloud, TargetSurface, TriangleSoup,
 };
 pub use triangulation::{Pieces, Triangulation, TriangulationEdge};
 pub use union_find::UnionFind;

@@ -45,7 +45,9 @@ pub struct Draping {
     preset: Preset,
     truth: Option<Positions>,
     regions: Regions,
-    /// Where it started, in the target's coordinates.
+    /// The source brought to its landmarks, in the target's coordinates.
+    by_landmarks: Positions,
+    /// Where it started, likewise.
     initial: Positions,
     drape: Drape,
     /// What is draped in the place of the source, as long as it is.
@@ -93,6 +95,7 @@ impl Draping {
         };
         let Start {
             shape,
+            by_landmarks,
             drape: config,
         } = stages.time("initial deformation", || {
             Start::choose(draped_pair, &preset, &first_regions)
@@ -104,11 +107,13 @@ impl Draping {
                 set_up(draped_pair, config, &initial, &first_regions)
             })
         })?;
+        let carried = |x: Positions| match &stand_in {
+            Some(stand_in) => stand_in.carry(&x),
+            None => x,
+        };
         let mut draping = Self {
-            initial: match &stand_in {
-                Some(stand_in) => stand_in.carry(&initial),
-                None => initial,
-            },
+            by_landmarks: carried(by_landmarks),
+            initial: carried(initial),
             n_after: if stand_in.is_some() { N_REFINING } else { 0 },
             n_before: 0,
             pair,
@@ -388,6 +393,7 @@ impl Draping {
             network: self.network(),
             pair: self.pair,
             preset: self.preset,
+            by_landmarks: self.by_landmarks,
             initial: self.initial,
             draped,
             report,

@@ -16,7 +16,9 @@ pub struct Outcome {
     pub pair: Pair,
     /// The settings.
     pub preset: Preset,
-    /// Where the drape started, in the target's coordinates; one position per vertex of the source.
+    /// The source brought to its landmarks, in the target's coordinates; one position per vertex of the source.
+    pub by_landmarks: Positions,
+    /// Where the drape started, likewise: there, or in the best of several starts.
     pub initial: Positions,
     /// The result, likewise.
     pub draped: Positions,
@@ -55,6 +57,7 @@ impl Outcome {
             explanation: explain(&pair, &draped, &report.vertex_distances, &counted),
             pair,
             preset,
+            by_landmarks: initial.clone(),
             initial,
             draped,
             report,

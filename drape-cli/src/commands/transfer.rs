@@ -213,7 +213,7 @@ impl Done<'_> {
     /// What the judge says of the initial deformation and of the result.
     pub(super) fn reports(&self) -> anyhow::Result<[Report; 2]> {
         let run = &self.outcome;
-        let initial = run.pair.judge(&run.initial, self.truth.as_ref())?;
+        let initial = run.pair.judge(&run.by_landmarks, self.truth.as_ref())?;
         Ok([initial, run.report.clone()])
     }
 
@@ -227,7 +227,7 @@ impl Done<'_> {
             Image::row(&[
                 gallery.source(view),
                 gallery.target(view),
-                gallery.initial(&run.initial, view),
+                gallery.initial(&run.by_landmarks, view),
                 gallery.result(&run.draped, view),
                 gallery.marked_heat(&run.draped, distances, DISTANCE_AT_TOP, &marks, view),
             ])

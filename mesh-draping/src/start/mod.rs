@@ -22,6 +22,8 @@ const POOR: f64 = 0.7;
 /// Where a drape starts, and with which settings it goes on from there.
 pub(crate) struct Start {
     pub(crate) shape: InitialShape,
+    /// The deformation by landmarks, before other starts were tried.
+    pub(crate) by_landmarks: Positions,
     /// Those of the preset; where these leave open what lies beyond, and the trials say that nothing does, both shapes are
     /// whole.
     pub(crate) drape: DrapeConfig,
@@ -33,8 +35,10 @@ impl Start {
     /// # Errors
     /// As [`initial_deformation`].
     pub(crate) fn choose(pair: &Pair, preset: &Preset, regions: &Regions) -> Result<Self, Error> {
+        let shape = initial_deformation(pair, preset.initial)?;
         let mut start = Self {
-            shape: initial_deformation(pair, preset.initial)?,
+            by_landmarks: shape.positions.clone(),
+            shape,
             drape: preset.drape.clone(),
         };
         if preset.initial == InitialMethod::Tried {

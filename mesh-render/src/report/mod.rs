@@ -83,7 +83,10 @@ impl Page<'_> {
             let row = [
                 ("source, turned as the target", gallery.source(view)),
                 ("target", gallery.target(view)),
-                ("initial deformation", gallery.initial(&run.initial, view)),
+                (
+                    "initial deformation",
+                    gallery.initial(&run.by_landmarks, view),
+                ),
                 ("result", gallery.result(&run.draped, view)),
             ];
             rows += &figures_of(row)?;
