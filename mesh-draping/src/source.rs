@@ -11,6 +11,7 @@ use mesh_core::{
 };
 
 use crate::error::{check_copies, check_extent, in_file, MeshProblem};
+use crate::parts::PartProblem;
 use crate::{Error, Note, Seams, Shape};
 
 /// A mesh to deform: connectivity, rest positions, its polygons as triangles, and its file, to write it back.
@@ -26,6 +27,8 @@ pub struct Source {
     /// The first row of the file for each vertex.
     rows: Arc<Vec<u32>>,
     bvh: Arc<OnceLock<TriangleBvh>>,
+    /// Parts that were named in memory.
+    parts: Arc<Vec<(String, Vec<VertexId>)>>,
 }
 
 /// Positions read for a source, one per vertex.
@@ -108,7 +111,28 @@ impl Source {
             weld: Arc::new(weld),
             rows: Arc::new(rows),
             bvh: Arc::default(),
+            parts: Arc::default(),
         })
+    }
+
+    /// The same source with a part named `name`, that [`Parts`](crate::Parts) find as they find the groups of a file:
+    /// the vertices of these rows.
+    ///
+    /// # Errors
+    /// A row that the source does not have.
+    pub fn with_part(mut self, name: &str, rows: &[usize]) -> Result<Self, PartProblem> {
+        let n = self.n_file_vertices();
+        let vertex = |&row: &usize| self.vertex_at(row).ok_or(PartProblem::NoVertex { row, n });
+        let vertices = rows.iter().map(vertex).collect::<Result<_, _>>()?;
+        Arc::make_mut(&mut self.parts).push((name.to_owned(), vertices));
+        Ok(self)
+    }
+
+    /// The vertices of a part that was named in memory.
+    pub(crate) fn part(&self, name: &str) -> Option<&[VertexId]> {
+        let mut parts = self.parts.iter();
+        let found = parts.find(|(known, _)| known == name);
+        found.map(|(_, vertices)| vertices.as_slice())
     }
 
     /// The same source; its morph targets are treated as `morphs` says when it is written.
@@ -301,6 +325,26 @@ mod tests {
             faces: vec![vec![0, 1]],
         };
         assert!(Source::of_soup(soup, Seams::EXACT).is_err());
+    }
+
+    #[test]
+    fn a_part_named_in_memory_is_found_like_a_group() {
+        let soup = shapes::open_grid(2, 2);
+        let source = Source::of_soup(soup.clone(), Seams::EXACT).unwrap();
+        let named = source.clone().with_part("rim", &[0, 1, 2]).unwrap();
+        assert!(source.with_part("rim", &[9]).is_err());
+        let pair = crate::Pair {
+            source: named,
+            target: crate::Target::of_soup(soup).unwrap(),
+            landmarks: Vec::new(),
+        };
+        let parts = crate::Parts {
+            free: vec!["rim".to_owned()],
+            ..crate::Parts::default()
+        };
+        let attraction = parts.resolve(&pair).unwrap().regions.attraction;
+        let free = attraction.ids().filter(|&v| attraction[v] == 0.0);
+        assert_eq!(free.map(|v| v.index()).collect::<Vec<_>>(), [0, 1, 2]);
     }
 
     #[test]

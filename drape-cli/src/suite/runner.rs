@@ -1,7 +1,6 @@
 //! Runs tasks in processes of their own, several at a time.
 
 use std::path::{Path, PathBuf};
-use std::process::Command;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
@@ -11,12 +10,13 @@ use serde::Deserialize;
 
 use super::row::{append, load, Row};
 use super::{Method, Task, INITIAL};
+use crate::Program;
 
 /// How to run.
 #[derive(Clone, Debug)]
 pub(crate) struct Pool {
     /// This very program.
-    program: PathBuf,
+    program: Program,
     /// Runs at a time.
     jobs: usize,
     /// Threads for each run, where limited.
@@ -34,7 +34,7 @@ struct Outcome {
 impl Pool {
     pub(crate) fn new(jobs: usize) -> anyhow::Result<Self> {
         Ok(Self {
-            program: std::env::current_exe().context("cannot find this program to run it again")?,
+            program: Program::present().context("cannot find this program to run it again")?,
             jobs: jobs.max(1),
             threads: (jobs > 1).then(|| (rayon::current_num_threads() / jobs).max(1)),
         })
@@ -94,7 +94,7 @@ impl Pool {
                 .is_ok_and(|t| t <= finished)
         };
         let is_right =
-            row.error.is_none() && task.inputs().all(is_older) && is_older(&self.program);
+            row.error.is_none() && task.inputs().all(is_older) && is_older(&self.program.file);
         (is_right && task.output.is_file() && task.picture.is_file()).then(|| row.clone())
     }
 
@@ -137,7 +137,7 @@ impl Pool {
     }
 
     fn child(&self, arguments: &[String]) -> anyhow::Result<Outcome> {
-        let mut command = Command::new(&self.program);
+        let mut command = self.program.command();
         if let Some(threads) = self.threads {
             command.arg("--threads").arg(threads.to_string());
         }
