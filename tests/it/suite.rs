@@ -63,6 +63,32 @@ fn a_batch_names_its_outputs_from_a_pattern() {
 }
 
 #[test]
+fn parts_of_a_batch_come_together_in_one_table() {
+    let place = Workplace::new();
+    for name in ["second.ply", "third.ply"] {
+        std::fs::copy(place.path("target.ply"), place.path(name)).expect("a copy");
+    }
+    let line = "batch source.obj target.ply second.ply third.ply -o done/{target}.obj --config short.toml";
+    for (part, n) in [("1/2", 2), ("2/2", 1)] {
+        let ended = place.drape(&format!("{line} --shard {part}")).well();
+        let told = format!("{n} of {n} runs of this part done");
+        assert!(ended.stdout.contains(&told), "{}", ended.stdout);
+    }
+    assert!(!place.exists("drape-batch/results.csv"));
+    let again = place.drape(&format!("{line} --shard 1/2")).well();
+    assert!(again.stderr.starts_with("2 runs, 2 done before"));
+    let whole = place.drape(line).well();
+    assert!(
+        whole.stderr.starts_with("3 runs, 3 done before"),
+        "{}",
+        whole.stderr
+    );
+    assert_eq!(place.read("drape-batch/results.csv").lines().count(), 4);
+    let beyond = place.drape(&format!("{line} --shard 3/2"));
+    assert_eq!((beyond.code, beyond.stderr.lines().count()), (Some(2), 1));
+}
+
+#[test]
 fn a_manifest_with_a_mistake_is_refused_before_any_run() {
     let place = Workplace::new();
     place.write(

@@ -8,8 +8,8 @@ use mesh_draping::Preset;
 
 use super::evaluate::tell;
 use crate::args::{is_pipe, MorphArgs, SettingsArgs, WeldArgs};
-use crate::output::{check_distinct, check_mesh};
-use crate::suite::{self, stem, Method, Pair, Pool, Task};
+use crate::output::{check_distinct, check_mesh, say};
+use crate::suite::{self, stem, Method, Pair, Pool, Shard, Task};
 use crate::FAILED;
 
 #[derive(Debug, clap::Args)]
@@ -37,6 +37,10 @@ pub(crate) struct Args {
     /// Runs at a time
     #[arg(long, value_name = "N", default_value_t = 1)]
     jobs: usize,
+    /// Only the K-th of N parts of the targets, for one machine of many; when all parts are done, the same line without
+    /// this writes the tables
+    #[arg(long, value_name = "K/N")]
+    shard: Option<Shard>,
 }
 
 pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
@@ -56,11 +60,27 @@ pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
     for pattern in args.landmarks.iter().chain([&args.output]) {
         check_pattern(pattern)?;
     }
-    let tasks = tasks(args)?;
-    let rows = suite::run(&tasks, &args.summary, &Pool::new(args.jobs)?)?;
-    let n_failed = tell(&rows, &args.summary)?;
+    let (tasks, pool) = (tasks(args)?, Pool::new(args.jobs)?);
+    let n_failed = match args.shard {
+        None => tell(&suite::run(&tasks, &args.summary, &pool)?, &args.summary)?,
+        Some(shard) => {
+            let rows = suite::run_shard(shard, &shard.of(tasks), &args.summary, &pool)?;
+            tell_shard(&rows)?
+        }
+    };
     // What was asked for is not all there: bad input, as with one target.
     Ok(ExitCode::from(if n_failed > 0 { FAILED } else { 0 }))
+}
+
+/// Says how many runs of a shard are done; how many failed.
+fn tell_shard(rows: &[suite::Row]) -> anyhow::Result<usize> {
+    let n_failed = rows.iter().filter(|row| row.error.is_some()).count();
+    say(&format!(
+        "{} of {} runs of this part done; without --shard, the same line writes the tables\n",
+        rows.len() - n_failed,
+        rows.len()
+    ))?;
+    Ok(n_failed)
 }
 
 fn tasks(args: &Args) -> anyhow::Result<Vec<Task>> {

@@ -8,7 +8,7 @@ use std::time::{Duration, SystemTime, UNIX_EPOCH};
 use anyhow::{anyhow, Context as _};
 use serde::Deserialize;
 
-use super::row::{append, load, Row};
+use super::row::{append, Row};
 use super::{Method, Task, INITIAL};
 use crate::Program;
 
@@ -40,12 +40,16 @@ impl Pool {
         })
     }
 
-    /// The rows of all tasks, in order: those in `store` that are still right, the others run now and added to it.
-    pub(super) fn run(&self, tasks: &[Task], store: &Path) -> anyhow::Result<Vec<Row>> {
-        let known = load(store)?;
+    /// The rows of all tasks, in order: those that are known and still right, the others run now and added to `store`.
+    pub(super) fn run(
+        &self,
+        tasks: &[Task],
+        known: &[Row],
+        store: &Path,
+    ) -> anyhow::Result<Vec<Row>> {
         let done: Vec<Option<Row>> = tasks
             .iter()
-            .map(|task| self.still_right(task, &known))
+            .map(|task| self.still_right(task, known))
             .collect();
         let n_left = done.iter().filter(|row| row.is_none()).count();
         eprintln!("{} runs, {} done before", tasks.len(), tasks.len() - n_left);
