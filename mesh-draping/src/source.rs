@@ -6,8 +6,8 @@ use std::sync::{Arc, OnceLock};
 use mesh_core::bvh::closest_point_on_triangle;
 use mesh_core::io::{self, MeshFile, Morphs, WriteError};
 use mesh_core::{
-    Aabb, FaceId, HalfedgeMesh, Location, MeshPoint, Point3, PolygonSoup, Positions, TriangleBvh,
-    Triangulation, VertexId, Weld,
+    map_gradients, Aabb, FaceId, HalfedgeMesh, Location, MeshPoint, Point3, PolygonSoup, Positions, TriangleBvh,
+    Triangulation, Vector3, VertexId, Weld,
 };
 
 use crate::error::{check_copies, check_extent, in_file, MeshProblem};
@@ -289,6 +289,21 @@ impl Source {
         }
     }
 
+    /// Displacements from the rest shape, one per vertex of the file, taken to `draped`: `δ' = J δ` with the gradient J of
+    /// the map from rest to `draped` around each vertex ([`map_gradients`]), as morph targets of a glTF file are carried.
+    ///
+    /// # Panics
+    /// If there is not one displacement per vertex of the file.
+    pub fn carry(&self, draped: &Positions, displacements: &[Vector3]) -> Vec<Vector3> {
+        assert_eq!(displacements.len(), self.n_file_vertices());
+        let rest = self.moved_soup(self.spread(&self.rest));
+        let maps = map_gradients(&rest, self.spread(draped).as_slice());
+        let carried = displacements.iter().zip(maps);
+        carried
+            .map(|(d, map)| map.map_or(*d, |map| map * d))
+            .collect()
+    }
+
     /// The faces of the file with its vertices at `positions`, one per vertex of the file.
     fn moved_soup(&self, positions: Positions) -> PolygonSoup {
         let file_vertex = |v: &VertexId| self.rows[v.index()];
@@ -325,6 +340,17 @@ mod tests {
             faces: vec![vec![0, 1]],
         };
         assert!(Source::of_soup(soup, Seams::EXACT).is_err());
+    }
+
+    #[test]
+    fn displacements_turn_and_grow_with_the_surface_around_them() {
+        let source = Source::of_soup(shapes::quad_sphere(4), Seams::EXACT).unwrap();
+        let turned = |p: Vector3| Vector3::new(-2.0 * p.y, 2.0 * p.x, 2.0 * p.z);
+        let draped = source.rest().map(|p| Point3::from(turned(p.coords)));
+        let given: Vec<Vector3> = source.rest().iter().map(|p| p.coords * 0.1).collect();
+        for (d, carried) in given.iter().zip(source.carry(&draped, &given)) {
+            assert!((turned(*d) - carried).norm() < 1e-9);
+        }
     }
 
     #[test]

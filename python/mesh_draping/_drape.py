@@ -9,7 +9,7 @@ from typing import Any, Callable, Iterator, Optional, Sequence, Union
 from . import _native
 from ._judge import positions
 from ._settings import resolved as resolved_settings
-from ._shapes import Array, Path, Source, as_source, as_target
+from ._shapes import Array, Path, as_source, as_target, gathered, rows
 from ._warp import Warp
 from .landmarks import resolved
 
@@ -194,8 +194,6 @@ class Result:
     @cached_property
     def faces(self) -> Union[Array, list]:
         """The source's faces, in its order: int64 of shape (m, k) where all have k corners, else a list of arrays."""
-        from ._shapes import gathered
-
         return gathered(*self._native.source.polygons)
 
     @cached_property
@@ -240,6 +238,10 @@ class Result:
     def write(self, path: Path) -> None:
         """Writes the source's file with its vertices at the result: in its own format nothing else changes."""
         self._native.write(path)
+
+    def carry(self, displacements: Any) -> Array:
+        """Displacements from the rest shape, such as those of shape keys, shape (n, 3), taken to the result."""
+        return self._native.carry(rows(displacements))
 
     def warp(self) -> Warp:
         """What the drape did to space, to do it to other points."""

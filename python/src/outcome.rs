@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use mesh_draping::mesh_core::Point3;
 use mesh_draping::mesh_metrics::Report;
 use mesh_draping::{initial_deformation, Preset};
 use numpy::{PyArray1, PyArray2};
@@ -78,6 +79,26 @@ impl Outcome {
     /// Writes the source's file with its vertices at the result.
     fn write(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
         py.detach(|| self.0.write(path)).map_err(told)
+    }
+
+    /// Displacements from the rest shape, such as those of shape keys, taken to the result.
+    fn carry<'py>(
+        &self,
+        py: Python<'py>,
+        displacements: Rows<'py>,
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let (source, draped) = (&self.0.pair.source, &self.0.draped);
+        let given = arrays::vectors(&displacements, "displacements")?;
+        if given.len() != source.n_file_vertices() {
+            return Err(Error::new_err(format!(
+                "displacements has {} rows, but the source has {} vertices",
+                given.len(),
+                source.n_file_vertices()
+            )));
+        }
+        let carried = py.detach(|| source.carry(draped, &given));
+        let points: Vec<Point3> = carried.into_iter().map(Point3::from).collect();
+        arrays::of_points(py, &points)
     }
 
     /// What the drape did to space.
