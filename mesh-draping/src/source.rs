@@ -6,8 +6,8 @@ use std::sync::{Arc, OnceLock};
 use mesh_core::bvh::closest_point_on_triangle;
 use mesh_core::io::{self, MeshFile, Morphs, WriteError};
 use mesh_core::{
-    map_gradients, Aabb, FaceId, HalfedgeMesh, Location, MeshPoint, Point3, PolygonSoup, Positions, TriangleBvh,
-    Triangulation, Vector3, VertexId, Weld,
+    map_gradients, Aabb, FaceId, HalfedgeMesh, Location, MeshPoint, Point3, PolygonSoup, Positions,
+    TriangleBvh, Triangulation, Vector3, VertexId, Weld,
 };
 
 use crate::error::{check_copies, check_extent, in_file, MeshProblem};

@@ -28,9 +28,8 @@ impl Creature {
         landmarks: usize,
         variant: &str,
     ) -> PyResult<Self> {
-        let wrong = |what: &str, error: &dyn std::fmt::Display| {
-            Error::new_err(format!("{what}: {error}"))
-        };
+        let wrong =
+            |what: &str, error: &dyn std::fmt::Display| Error::new_err(format!("{what}: {error}"));
         let plan = plan.parse().map_err(|error| wrong(plan, &error))?;
         let variant = variant.parse().map_err(|error| wrong(variant, &error))?;
         if !(0.0..=120.0).contains(&angle) {
@@ -47,7 +46,11 @@ impl Creature {
         };
         Ok(py.detach(|| {
             let target = Individual::drawn(plan, seed, Dial { angle, ratio });
-            Self(CreaturePair::new(&Individual::template(plan), &target, &config))
+            Self(CreaturePair::new(
+                &Individual::template(plan),
+                &target,
+                &config,
+            ))
         }))
     }
 

@@ -78,10 +78,7 @@ impl Draping {
         settings: &Settings,
         truth: Option<Rows<'_>>,
     ) -> PyResult<Self> {
-        let pair = inputs
-            .landmarks
-            .get()
-            .pair(&inputs.source, &inputs.target);
+        let pair = inputs.landmarks.get().pair(&inputs.source, &inputs.target);
         let mut transfer =
             Transfer::of_pair(pair, settings.0.clone()).with_parts(inputs.parts.clone());
         if let Some(truth) = truth {
@@ -191,8 +188,7 @@ impl Draping {
             }
             let draping = held.as_mut().ok_or_else(|| self.gone())?;
             let done = work(draping)?;
-            self.iteration
-                .store(draping.iteration(), Ordering::Relaxed);
+            self.iteration.store(draping.iteration(), Ordering::Relaxed);
             self.n_iterations
                 .store(draping.n_iterations(), Ordering::Relaxed);
             Ok(done)

@@ -56,7 +56,9 @@ impl Outcome {
         let mut told = judged(&run.report);
         told["figures"]["left_out"] = json!(run.left_out());
         told["explanation"] = json!(run.explanation);
-        told["history"] = curves.map(|c| (c.name.to_owned(), json!(c.points))).collect();
+        told["history"] = curves
+            .map(|c| (c.name.to_owned(), json!(c.points)))
+            .collect();
         told["notes"] = self.notes().into();
         told["preset"] = json!(run.preset.name);
         told["settings"] = json!(run.preset.drape);
@@ -149,7 +151,9 @@ pub(crate) fn metrics(
     truth: Option<Rows<'_>>,
 ) -> PyResult<String> {
     let draped = source.gathered(&result, "the result")?;
-    let truth = truth.map(|t| source.gathered(&t, "the truth")).transpose()?;
+    let truth = truth
+        .map(|t| source.gathered(&t, "the truth"))
+        .transpose()?;
     let pair = landmarks.pair(source, target);
     let report = waited(py, move || pair.judge(&draped, truth.as_ref()))?;
     Ok(judged(&report.map_err(told)?).to_string())
@@ -164,7 +168,10 @@ pub(crate) fn read_vertices<'py>(
 ) -> PyResult<Bound<'py, PyArray2<f64>>> {
     let gathered = source.0.read_positions(&path).map_err(told)?;
     if !gathered.widest_gap.is_finite() {
-        return Err(Error::new_err(format!("{}: holds no shape", path.display())));
+        return Err(Error::new_err(format!(
+            "{}: holds no shape",
+            path.display()
+        )));
     }
     arrays::of_points(py, &source.0.spread(&gathered.positions))
 }

@@ -154,7 +154,9 @@ impl Target {
     #[pyo3(signature = (points, normals = None))]
     fn of_points(py: Python<'_>, points: Rows<'_>, normals: Option<Rows<'_>>) -> PyResult<Self> {
         let points = arrays::points(&points, "points")?;
-        let normals = normals.map(|n| arrays::vectors(&n, "normals")).transpose()?;
+        let normals = normals
+            .map(|n| arrays::vectors(&n, "normals"))
+            .transpose()?;
         let target = waited(py, move || mesh_draping::Target::of_points(points, normals))?;
         Ok(Self(target.map_err(told)?))
     }

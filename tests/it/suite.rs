@@ -68,7 +68,8 @@ fn parts_of_a_batch_come_together_in_one_table() {
     for name in ["second.ply", "third.ply"] {
         std::fs::copy(place.path("target.ply"), place.path(name)).expect("a copy");
     }
-    let line = "batch source.obj target.ply second.ply third.ply -o done/{target}.obj --config short.toml";
+    let line =
+        "batch source.obj target.ply second.ply third.ply -o done/{target}.obj --config short.toml";
     for (part, n) in [("1/2", 2), ("2/2", 1)] {
         let ended = place.drape(&format!("{line} --shard {part}")).well();
         let told = format!("{n} of {n} runs of this part done");

@@ -109,12 +109,7 @@ pub(crate) fn run_shard(
 }
 
 /// Runs what no file of rows in `folder` has; new rows go to `store`.
-fn run_into(
-    store: &Path,
-    tasks: &[Task],
-    folder: &Path,
-    pool: &Pool,
-) -> anyhow::Result<Vec<Row>> {
+fn run_into(store: &Path, tasks: &[Task], folder: &Path, pool: &Pool) -> anyhow::Result<Vec<Row>> {
     let place = store.parent().unwrap_or(folder);
     std::fs::create_dir_all(place)
         .with_context(|| format!("{}: the folder cannot be made", place.display()))?;
