@@ -296,12 +296,19 @@ impl Source {
     /// If there is not one displacement per vertex of the file.
     pub fn carry(&self, draped: &Positions, displacements: &[Vector3]) -> Vec<Vector3> {
         assert_eq!(displacements.len(), self.n_file_vertices());
-        let rest = self.moved_soup(self.spread(&self.rest));
-        let maps = map_gradients(&rest, self.spread(draped).as_slice());
+        let maps = map_gradients(&self.soup(), self.spread(draped).as_slice());
         let carried = displacements.iter().zip(maps);
         carried
             .map(|(d, map)| map.map_or(*d, |map| map * d))
             .collect()
+    }
+
+    /// All polygons at rest, with the vertices of the file.
+    pub fn soup(&self) -> PolygonSoup {
+        match self.file() {
+            Some(file) => file.soup().clone(),
+            None => self.moved_soup(self.spread(&self.rest)),
+        }
     }
 
     /// The faces of the file with its vertices at `positions`, one per vertex of the file.

@@ -51,6 +51,22 @@ def write(landmarks: Any, source: Any, target: Any, path: Path, form: str = "jso
     return moved
 
 
+def read_wrap(on_source: Path, on_target: Path, source: Any, target: Any) -> "List[Entry]":
+    """The entries of the two point files of Faceform Wrap, ``[[triangle, u, v], …]`` or the same by name."""
+    source, target = as_source(source), as_target(target)
+    found = _native.Landmarks.read_wrap(on_source, on_target, source._native, target._native)
+    return _entries(found, source, target)
+
+
+def write_wrap(landmarks: Any, source: Any, target: Any, on_source: Path, on_target: Path) -> None:
+    """Writes landmarks as the two point files of Faceform Wrap."""
+    source, target = as_source(source), as_target(target)
+    texts = resolved(landmarks, source, target).wrap_texts(source._native, target._native)
+    for path, text in zip((on_source, on_target), texts):
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(text)
+
+
 def check(landmarks: Any, source: Any, target: Any) -> Check:
     """How far each landmark is from where the others expect it, and what looks wrong."""
     source, target = as_source(source), as_target(target)

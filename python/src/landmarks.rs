@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use mesh_draping::landmarks::{self, leave_one_out_residuals, Finding, Form};
+use mesh_draping::landmarks::{self, leave_one_out_residuals, Finding, Form, WrapPoints};
 use mesh_draping::mesh_core::Landmark;
 use mesh_draping::Pair;
 use pyo3::prelude::*;
@@ -28,6 +28,28 @@ impl Landmarks {
     fn read(path: PathBuf, source: &Source, target: &Target) -> PyResult<Self> {
         let read = landmarks::read(path, &source.0, &target.0);
         Ok(Self(read.map_err(told)?))
+    }
+
+    /// Reads the two point files of Faceform Wrap.
+    #[staticmethod]
+    fn read_wrap(
+        on_source: PathBuf,
+        on_target: PathBuf,
+        source: &Source,
+        target: &Target,
+    ) -> PyResult<Self> {
+        let files = WrapPoints {
+            source: on_source.as_path(),
+            target: on_target.as_path(),
+        };
+        let read = landmarks::read_wrap(files, &source.0, &target.0);
+        Ok(Self(read.map_err(told)?))
+    }
+
+    /// The texts of the two point files of Faceform Wrap.
+    fn wrap_texts(&self, source: &Source, target: &Target) -> PyResult<(String, String)> {
+        let written = landmarks::write_wrap(&self.0, &source.0, &target.0).map_err(told)?;
+        Ok((written.source, written.target))
     }
 
     /// The landmarks in the text of a landmark file.

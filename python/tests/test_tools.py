@@ -31,6 +31,15 @@ def test_landmarks_are_read_written_and_looked_at(folder, pair, tmp_path):
     assert md.landmarks.suggest(entries, source, target, 2) == json.loads(told)["suggestions"]
 
 
+def test_point_files_of_wrap_are_read_and_written(pair, tmp_path):
+    files = tmp_path / "source.json", tmp_path / "target.json"
+    md.landmarks.write_wrap(pair.landmarks, pair.source, pair.target, *files)
+    again = md.landmarks.read_wrap(*files, pair.source, pair.target)
+    assert {e["name"]: e["source"] for e in again} == {m["name"]: m["source"] for m in pair.landmarks}
+    with pytest.raises(md.Error, match="none.json"):
+        md.landmarks.read_wrap(tmp_path / "none.json", files[1], pair.source, pair.target)
+
+
 def test_landmarks_of_one_half_are_mirrored():
     source, target, marks, _ = md.bench.pair("head", seed=0, angle=0, ratio=1, landmarks=20)
     half = [m for m in marks if not m["name"].startswith("right")]
