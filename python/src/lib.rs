@@ -11,6 +11,7 @@ mod draping;
 mod error;
 mod landmarks;
 mod outcome;
+mod rays;
 mod settings;
 mod shapes;
 mod step;
@@ -33,6 +34,8 @@ mod native {
     use crate::landmarks::Landmarks;
     #[pymodule_export]
     use crate::outcome::{initial, metrics, read_vertices, Outcome};
+    #[pymodule_export]
+    use crate::rays::Surface;
     #[pymodule_export]
     use crate::settings::Settings;
     #[pymodule_export]
