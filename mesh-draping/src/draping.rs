@@ -67,6 +67,8 @@ pub(crate) struct Beginning {
     pub(crate) notes: Vec<Note>,
     pub(crate) truth: Option<Positions>,
     pub(crate) stages: Stages,
+    /// A shape that nearly fits, where one is known.
+    pub(crate) start: Option<Positions>,
     pub(crate) is_stand_in_allowed: bool,
 }
 
@@ -79,10 +81,12 @@ impl Draping {
             mut notes,
             truth,
             mut stages,
+            start,
             is_stand_in_allowed,
         } = beginning;
         pair.check_landmarks(&pair.landmarks)?;
         pair.check_lengths(&regions, truth.as_ref())?;
+        pair.check_start(start.as_ref())?;
         let is_dense = is_stand_in_allowed && StandIn::is_needed(&pair, &preset);
         let stand_in = is_dense.then(|| stages.time("stand-in", || StandIn::new(&pair)));
         let stand_in = stand_in.transpose()?;
@@ -94,8 +98,9 @@ impl Draping {
         let Start {
             shape,
             drape: config,
-        } = stages.time("initial deformation", || {
-            Start::choose(draped_pair, &preset, &first_regions)
+        } = stages.time("initial deformation", || match &start {
+            Some(shape) => Start::of_shape(draped_pair, &preset, shape),
+            None => Start::choose(draped_pair, &preset, &first_regions),
         })?;
         let initial = shape.positions;
         notes.extend(shape.notes);

@@ -24,6 +24,7 @@ pub struct Transfer {
     regions: Option<Regions>,
     truth: Option<Positions>,
     stages: Stages,
+    start: Option<Positions>,
     is_stand_in_allowed: bool,
 }
 
@@ -47,6 +48,7 @@ impl Transfer {
             regions: None,
             truth: None,
             stages: Stages::off(),
+            start: None,
             is_stand_in_allowed: true,
         }
     }
@@ -81,6 +83,19 @@ impl Transfer {
         Self { stages, ..self }
     }
 
+    /// The drape starts from a shape of the source that nearly fits, in the target's coordinates: the result of the frame
+    /// before. Landmarks, where there are any, deform it as they deform a drape in progress ([`Draping::set_landmarks`]). No
+    /// start is searched, and the run is the end of a whole one: as many iterations as a changed drape gets
+    /// ([`Draping::n_more`]), at its last weights and finest steps.
+    #[must_use]
+    pub fn with_start(self, shape: Positions) -> Self {
+        Self {
+            start: Some(shape),
+            is_stand_in_allowed: false,
+            ..self
+        }
+    }
+
     /// A dense source is draped itself, without a coarse stand-in.
     #[must_use]
     pub fn without_stand_in(self) -> Self {
@@ -108,6 +123,7 @@ impl Transfer {
             notes,
             truth: self.truth,
             stages: self.stages,
+            start: self.start,
             is_stand_in_allowed: self.is_stand_in_allowed,
         };
         Draping::start(self.pair, beginning)

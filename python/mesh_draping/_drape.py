@@ -57,6 +57,8 @@ class Drape:
     ``weights``: how strongly each vertex is attracted, a file of lines "vertex weight" or ``property:NAME``.
     ``hidden``: False drapes inner pieces that no one named like the rest.
     ``truth``: where each vertex belongs, to judge by: a path, or an array of shape (n, 3).
+    ``start``: a shape of the source that nearly fits, likewise: the result of the frame before. No start is searched then, and
+    the run is a third as long.
     ``config``: a TOML file of settings over those of the preset. ``settings``: single settings over both, by the names of
     :func:`mesh_draping.settings`, such as ``overlap="source-partial"`` or ``sampling={"n_samples": 4000}``.
     """
@@ -75,6 +77,7 @@ class Drape:
         weights: Optional[str] = None,
         hidden: bool = True,
         truth: Any = None,
+        start: Any = None,
         config: Optional[Path] = None,
         **settings: Any,
     ) -> None:
@@ -90,7 +93,7 @@ class Drape:
             weights=weights,
             hidden=hidden,
         )
-        self._native = _native.Draping(inputs, chosen, positions(self.source, truth))
+        self._native = _native.Draping(inputs, chosen, *(positions(self.source, shape) for shape in (truth, start)))
 
     def step(self) -> Optional[Step]:
         """One iteration; None when the run is over."""

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import json
+import math
 from pathlib import Path as _Path
-from typing import Any, Iterable, List, NamedTuple, Union
+from typing import Any, Iterable, Iterator, List, NamedTuple, Union
 
 import numpy as np
 
@@ -44,7 +45,31 @@ def pair(
     ``angle``: largest turn of a joint, 0 to 120 degrees. ``ratio``: largest ratio of lengths, 1 to 3. ``landmarks``: how
     many, 0 to 20. ``variant``: mesh, cloud, cracked or half-scan.
     """
-    made = _made(plan, seed, angle, ratio, landmarks, variant)
+    return _pair(_made(plan, seed, angle, ratio, landmarks, variant))
+
+
+def motion(
+    plan: str = "quadruped",
+    seed: int = 0,
+    n_frames: int = 60,
+    *,
+    angle: float = 60.0,
+    ratio: float = 1.75,
+    landmarks: int = 16,
+) -> "Iterator[Pair]":
+    """The frames of a creature in motion: joints turn there and back, as a sine, each frame in triangles of its own.
+
+    ``angle``: largest turn of a joint on the way. Others as for :func:`pair`.
+    """
+    for frame in range(n_frames):
+        turn = angle * 0.5 * (1.0 - math.cos(2.0 * math.pi * frame / n_frames))
+        made = _native.Creature.posed(
+            plan, seed=seed, frame=frame, angle=turn, ratio=ratio, landmarks=landmarks
+        )
+        yield _pair(made)
+
+
+def _pair(made: _native.Creature) -> Pair:
     points, (corners, counts) = made.target_vertices, made.target_polygons
     return Pair(
         (made.source_vertices, gathered(*made.source_polygons)),

@@ -1,6 +1,6 @@
 //! Creatures built in code, whose truth is known.
 
-use mesh_creatures::{CreaturePair, Dial, Individual, PairConfig};
+use mesh_creatures::{CreaturePair, Dial, Individual, PairConfig, Plan};
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 
@@ -32,12 +32,7 @@ impl Creature {
             |what: &str, error: &dyn std::fmt::Display| Error::new_err(format!("{what}: {error}"));
         let plan = plan.parse().map_err(|error| wrong(plan, &error))?;
         let variant = variant.parse().map_err(|error| wrong(variant, &error))?;
-        if !(0.0..=120.0).contains(&angle) {
-            return Err(wrong("angle", &"use 0 to 120 degrees"));
-        }
-        if !(1.0..=3.0).contains(&ratio) {
-            return Err(wrong("ratio", &"use 1 to 3"));
-        }
+        check_dial(angle, ratio)?;
         let config = PairConfig {
             variant,
             n_landmarks: landmarks,
@@ -51,6 +46,34 @@ impl Creature {
                 &target,
                 &config,
             ))
+        }))
+    }
+
+    /// One frame of a motion: the individual of a seed with the joints of a pose turned by up to `angle`.
+    #[staticmethod]
+    #[pyo3(signature = (plan, *, seed, frame, angle, ratio, landmarks))]
+    fn posed(
+        py: Python<'_>,
+        plan: &str,
+        seed: u64,
+        frame: u64,
+        angle: f64,
+        ratio: f64,
+        landmarks: usize,
+    ) -> PyResult<Self> {
+        let plan: Plan = plan.parse().map_err(|error| wrong(plan, &error))?;
+        check_dial(angle, ratio)?;
+        // Each frame is a scan of its own: other triangles.
+        let config = PairConfig {
+            n_landmarks: landmarks,
+            seed: frame,
+            ..PairConfig::standard()
+        };
+        Ok(py.detach(|| {
+            let body = Individual::drawn(plan, seed, Dial { angle: 0.0, ratio });
+            let target = Individual::posed(plan, body.proportions().clone(), angle, seed);
+            let source = Individual::template(plan);
+            Self(CreaturePair::new(&source, &target, &config))
         }))
     }
 
@@ -98,6 +121,20 @@ impl Creature {
     fn landmarks_json(&self) -> String {
         self.0.landmarks_json()
     }
+}
+
+fn wrong(what: &str, error: &dyn std::fmt::Display) -> PyErr {
+    Error::new_err(format!("{what}: {error}"))
+}
+
+fn check_dial(angle: f64, ratio: f64) -> PyResult<()> {
+    if !(0.0..=120.0).contains(&angle) {
+        return Err(wrong("angle", &"use 0 to 120 degrees"));
+    }
+    if !(1.0..=3.0).contains(&ratio) {
+        return Err(wrong("ratio", &"use 1 to 3"));
+    }
+    Ok(())
 }
 
 fn polygons<'py>(py: Python<'py>, faces: &[Vec<u32>]) -> Polygons<'py> {

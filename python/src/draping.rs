@@ -77,12 +77,16 @@ impl Draping {
         inputs: &Inputs,
         settings: &Settings,
         truth: Option<Rows<'_>>,
+        start: Option<Rows<'_>>,
     ) -> PyResult<Self> {
         let pair = inputs.landmarks.get().pair(&inputs.source, &inputs.target);
         let mut transfer =
             Transfer::of_pair(pair, settings.0.clone()).with_parts(inputs.parts.clone());
         if let Some(truth) = truth {
             transfer = transfer.with_truth(inputs.source.gathered(&truth, "the truth")?);
+        }
+        if let Some(start) = start {
+            transfer = transfer.with_start(inputs.source.gathered(&start, "the start")?);
         }
         let draping = waited(py, move || transfer.start())?.map_err(told)?;
         Ok(Self {

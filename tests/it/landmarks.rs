@@ -64,7 +64,9 @@ fn point_files_of_wrap_are_written_and_read() {
     let on_source: Value = serde_json::from_str(&place.read("a.json")).expect("JSON");
     assert_eq!(on_source["right"].as_array().map(Vec::len), Some(3));
     place
-        .drape(&format!("{line} a.json --target-points b.json -o back.json"))
+        .drape(&format!(
+            "{line} a.json --target-points b.json -o back.json"
+        ))
         .well();
     let [before, after] = ["landmarks.json", "back.json"].map(|name| {
         let json: Value = serde_json::from_str(&place.read(name)).expect("JSON");

@@ -90,6 +90,32 @@ fn parts_of_a_batch_come_together_in_one_table() {
 }
 
 #[test]
+fn frames_of_a_motion_start_from_those_before() {
+    let place = Workplace::new();
+    for name in ["b.ply", "c.ply"] {
+        std::fs::copy(place.path("target.ply"), place.path(name)).expect("a copy");
+    }
+    std::fs::copy(place.path("landmarks.json"), place.path("target.json")).expect("a copy");
+    let line = "batch source.obj target.ply b.ply c.ply -l {target}.json -o done/{target}.obj --config short.toml --sequence";
+    place.drape(line).well();
+    let rows: serde_json::Value =
+        serde_json::from_str(&place.read("drape-batch/results.json")).expect("JSON");
+    let commands: Vec<String> = (rows.as_array().expect("rows").iter())
+        .map(|row| row["command"].to_string())
+        .collect();
+    assert!(!commands[0].contains("--from") && commands[0].contains("--landmarks"));
+    assert!(commands[1].contains("done/target.obj") && commands[2].contains("done/b.obj"));
+    assert!(!commands[1].contains("--landmarks"));
+    let again = place.drape(line).well();
+    assert!(
+        again.stderr.starts_with("3 runs, 3 done before"),
+        "{}",
+        again.stderr
+    );
+    assert_eq!(place.drape(&format!("{line} --jobs 2")).code, Some(2));
+}
+
+#[test]
 fn a_manifest_with_a_mistake_is_refused_before_any_run() {
     let place = Workplace::new();
     place.write(

@@ -41,6 +41,10 @@ pub(crate) struct Args {
     /// this writes the tables
     #[arg(long, value_name = "K/N")]
     shard: Option<Shard>,
+    /// The targets are the frames of a motion, in order: each drape starts from the result of the one before. Landmarks
+    /// may lack from the second frame on
+    #[arg(long, conflicts_with_all = ["shard", "jobs"])]
+    sequence: bool,
 }
 
 pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
@@ -118,10 +122,18 @@ fn tasks(args: &Args) -> anyhow::Result<Vec<Task>> {
                 name: stem(&output),
                 source: args.source.clone(),
                 target: target.clone(),
-                landmarks: args.landmarks.as_deref().map(named),
+                landmarks: args
+                    .landmarks
+                    .as_deref()
+                    .map(named)
+                    .filter(|path| !args.sequence || tasks.is_empty() || path.is_file()),
                 truth: None,
                 judge: None,
             },
+            from: tasks
+                .last()
+                .filter(|_| args.sequence)
+                .map(|before| before.output.clone()),
             method: method.clone(),
             options: options.clone(),
             seed: settings.seed.unwrap_or(0),

@@ -35,6 +35,8 @@ const STORE: &str = "results.jsonl";
 pub(crate) struct Task {
     pub(crate) pair: Pair,
     pub(crate) method: Method,
+    /// The result that the run starts from: the frame before.
+    pub(crate) from: Option<PathBuf>,
     /// More options of the command line.
     pub(crate) options: Vec<String>,
     pub(crate) seed: u64,

@@ -176,6 +176,9 @@ impl Pool {
         if let Some(truth) = &task.pair.truth {
             option("--truth", text(truth));
         }
+        if let Some(from) = &task.from {
+            option("--from", text(from));
+        }
         match &task.method {
             _ if is_initial => (),
             Method::Preset(name) => option("--preset", name.clone()),
@@ -205,6 +208,7 @@ impl Task {
             pair.truth.as_ref(),
             pair.judge.as_ref(),
             config,
+            self.from.as_ref(),
         ];
         [Some(&pair.source), Some(&pair.target)]
             .into_iter()
