@@ -71,7 +71,7 @@ impl Creature {
         };
         Ok(py.detach(|| {
             let body = Individual::drawn(plan, seed, Dial { angle: 0.0, ratio });
-            let target = Individual::posed(plan, body.proportions().clone(), angle, seed);
+            let target = Individual::posed(plan, *body.proportions(), angle, seed);
             let source = Individual::template(plan);
             Self(CreaturePair::new(&source, &target, &config))
         }))
