@@ -25,6 +25,7 @@ pub struct Transfer {
     truth: Option<Positions>,
     stages: Stages,
     start: Option<Positions>,
+    is_symmetric: bool,
     is_stand_in_allowed: bool,
 }
 
@@ -49,6 +50,7 @@ impl Transfer {
             truth: None,
             stages: Stages::off(),
             start: None,
+            is_symmetric: false,
             is_stand_in_allowed: true,
         }
     }
@@ -96,6 +98,17 @@ impl Transfer {
         }
     }
 
+    /// The result is as symmetric as the source: at the end, each vertex goes to the middle between itself and the mirror
+    /// image of its opposite, across the plane that lies between them. Where the target is not symmetric, the result
+    /// leaves it by as much.
+    #[must_use]
+    pub fn symmetric(self) -> Self {
+        Self {
+            is_symmetric: true,
+            ..self
+        }
+    }
+
     /// A dense source is draped itself, without a coarse stand-in.
     #[must_use]
     pub fn without_stand_in(self) -> Self {
@@ -108,7 +121,7 @@ impl Transfer {
     /// Finds the initial deformation and sets the drape up, to be stepped.
     ///
     /// # Errors
-    /// Landmarks or parts that do not fit the source, a setting out of range, a deformation that cannot be solved for.
+    /// Landmarks, parts or a start that do not fit the source, a source that shall come out symmetric and is not, a setting out of range, a deformation that cannot be solved for.
     pub fn start(self) -> Result<Draping, Error> {
         let (regions, notes) = match self.regions {
             Some(regions) => (regions, Vec::new()),
@@ -124,6 +137,7 @@ impl Transfer {
             truth: self.truth,
             stages: self.stages,
             start: self.start,
+            is_symmetric: self.is_symmetric,
             is_stand_in_allowed: self.is_stand_in_allowed,
         };
         Draping::start(self.pair, beginning)

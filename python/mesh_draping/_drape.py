@@ -56,6 +56,7 @@ class Drape:
     :class:`Source`.
     ``weights``: how strongly each vertex is attracted, a file of lines "vertex weight" or ``property:NAME``.
     ``hidden``: False drapes inner pieces that no one named like the rest.
+    ``symmetric``: True makes the result as symmetric as the source is.
     ``truth``: where each vertex belongs, to judge by: a path, or an array of shape (n, 3).
     ``start``: a shape of the source that nearly fits, likewise: the result of the frame before. No start is searched then, and
     the run is a third as long.
@@ -76,6 +77,7 @@ class Drape:
         draped: Sequence[str] = (),
         weights: Optional[str] = None,
         hidden: bool = True,
+        symmetric: bool = False,
         truth: Any = None,
         start: Any = None,
         config: Optional[Path] = None,
@@ -92,6 +94,7 @@ class Drape:
             draped=list(draped),
             weights=weights,
             hidden=hidden,
+            symmetric=symmetric,
         )
         self._native = _native.Draping(inputs, chosen, *(positions(self.source, shape) for shape in (truth, start)))
 

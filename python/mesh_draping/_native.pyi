@@ -86,6 +86,7 @@ class Inputs:
         draped: Sequence[str],
         weights: Optional[str],
         hidden: bool,
+        symmetric: bool,
     ) -> None: ...
 
 class Step:

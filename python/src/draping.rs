@@ -33,12 +33,13 @@ pub(crate) struct Inputs {
     target: Target,
     landmarks: Py<Landmarks>,
     parts: Parts,
+    is_symmetric: bool,
 }
 
 #[pymethods]
 impl Inputs {
     #[new]
-    #[pyo3(signature = (source, target, landmarks, *, free, rigid, draped, weights, hidden))]
+    #[pyo3(signature = (source, target, landmarks, *, free, rigid, draped, weights, hidden, symmetric))]
     #[allow(
         clippy::too_many_arguments,
         reason = "keywords of a call from Python; each is one option of the command line"
@@ -52,6 +53,7 @@ impl Inputs {
         draped: Vec<String>,
         weights: Option<String>,
         hidden: bool,
+        symmetric: bool,
     ) -> Self {
         Self {
             source: source.clone(),
@@ -64,6 +66,7 @@ impl Inputs {
                 weights,
                 is_hidden_draped: !hidden,
             },
+            is_symmetric: symmetric,
         }
     }
 }
@@ -84,6 +87,9 @@ impl Draping {
             Transfer::of_pair(pair, settings.0.clone()).with_parts(inputs.parts.clone());
         if let Some(truth) = truth {
             transfer = transfer.with_truth(inputs.source.gathered(&truth, "the truth")?);
+        }
+        if inputs.is_symmetric {
+            transfer = transfer.symmetric();
         }
         if let Some(start) = start {
             transfer = transfer.with_start(inputs.source.gathered(&start, "the start")?);

@@ -27,6 +27,7 @@ pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let name = |name: &str| args.output.join(name);
     let transfer = transfer::Args {
         from: None,
+        symmetric: false,
         profile: ProfileArgs { profile: false },
         source: files.source,
         target: files.target,

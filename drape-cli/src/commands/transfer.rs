@@ -58,6 +58,9 @@ pub(crate) struct Args {
     /// as long
     #[arg(long, value_name = "FILE")]
     pub(super) from: Option<PathBuf>,
+    /// Make the result as symmetric as the source is
+    #[arg(long)]
+    pub(super) symmetric: bool,
     /// Save the map, for `drape apply`
     #[arg(long, value_name = "WARP")]
     pub(super) warp: Option<PathBuf>,
@@ -124,6 +127,9 @@ pub(super) fn drape_files(args: &Args) -> anyhow::Result<Done<'_>> {
         .with_stages(stages);
     if let Some(truth) = truth.clone() {
         transfer = transfer.with_truth(truth);
+    }
+    if args.symmetric {
+        transfer = transfer.symmetric();
     }
     if let Some(start) = start {
         transfer = transfer.with_start(start);
