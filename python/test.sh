@@ -23,15 +23,17 @@ step "$env/pip" install --quiet --disable-pip-version-check "$wheel[progress,tri
 step "$env/pip" uninstall --quiet --yes maturin
 
 # The tests see the package that is installed, not the folder of this name.
-step "$env/python" -m mypy.stubtest mesh_draping._native --ignore-missing-stub
-step "$env/python" -m mypy --strict --package mesh_draping
-step env PATH="$env:$PATH" "$env/python" -P -m pytest -q tests --basetemp "$work/tests"
+here=$PWD
+cd "$work"
+step "$env/python" -m mypy.stubtest mesh_draping._native
+step "$env/python" -m mypy --config-file "$here/pyproject.toml" --package mesh_draping
+step env PATH="$env:$PATH" "$env/pytest" -q "$here/tests" --basetemp "$work/tests"
 
 if ! "$env/python" -c 'import sys; sys.exit(sys.version_info[:2] != (3, 11))'; then
     printf '\n== left out, no Python 3.11 here: the add-on under bpy\n'
     exit 0
 fi
-step "$env/pip" install --quiet --disable-pip-version-check -r blender/tests/requirements.txt
+step "$env/pip" install --quiet --disable-pip-version-check -r "$here/blender/tests/requirements.txt"
 if ! "$env/python" -c 'import bpy' 2>/dev/null; then
     as_root=$([ "$(id -u)" = 0 ] || echo sudo)
     step $as_root apt-get update
@@ -39,4 +41,4 @@ if ! "$env/python" -c 'import bpy' 2>/dev/null; then
 fi
 # A Blender of its own, without what someone set up on this machine.
 export BLENDER_USER_RESOURCES=$work/blender MESH_DRAPING_WHEEL=$wheel
-step "$env/python" -P -m pytest -q blender/tests --basetemp "$work/blender-tests"
+step "$env/pytest" -q "$here/blender/tests" --basetemp "$work/blender-tests"

@@ -5,8 +5,9 @@ from __future__ import annotations
 from typing import Any, Tuple
 
 import numpy as np
+from numpy.typing import NDArray
 
-Array = np.ndarray
+Array = NDArray[Any]
 
 
 def arrays(mesh: Any) -> "Tuple[Array, Array, Array]":

@@ -9,7 +9,7 @@ from typing import Any, Callable, Iterator, Optional, Sequence, Union
 from . import _native
 from ._judge import positions
 from ._settings import resolved as resolved_settings
-from ._shapes import Array, Path, as_source, as_target, gathered, rows
+from ._shapes import Array, Gathered, Path, as_source, as_target, gathered, rows
 from ._warp import Warp
 from .landmarks import resolved
 
@@ -198,7 +198,7 @@ class Result:
         return self._native.initial
 
     @cached_property
-    def faces(self) -> Union[Array, list]:
+    def faces(self) -> Gathered:
         """The source's faces, in its order: int64 of shape (m, k) where all have k corners, else a list of arrays."""
         return gathered(*self._native.source.polygons)
 
@@ -227,7 +227,7 @@ class Result:
         return self._told["explanation"]
 
     @property
-    def history(self) -> "dict[str, list]":
+    def history(self) -> "dict[str, list[Any]]":
         """The terms of the loss over the run: pairs (iteration, value), unweighted."""
         return self._told["history"]
 

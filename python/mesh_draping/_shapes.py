@@ -6,13 +6,16 @@ import os
 from typing import Any, Iterable, Mapping, Sequence, Tuple, Union
 
 import numpy as np
+from numpy.typing import NDArray
 
 from . import _native
 
-Array = np.ndarray
+Array = NDArray[Any]
 Path = Union[str, "os.PathLike[str]"]
 Faces = Union[Array, Sequence[Sequence[int]]]
 Polygons = Tuple[Array, Array]
+#: Faces as they come out: an array where all have as many corners.
+Gathered = Union[Array, "list[Array]"]
 
 
 class Source:
@@ -49,7 +52,7 @@ class Source:
         return self._native.vertices
 
     @property
-    def faces(self) -> Union[Array, list]:
+    def faces(self) -> Gathered:
         """The faces: int64 of shape (m, k) where all have k corners, else a list of arrays."""
         return gathered(*self._native.polygons)
 
@@ -135,7 +138,7 @@ def check_whole(numbers: Array) -> None:
         raise _native.Error(f"faces must be whole numbers, not {numbers.dtype}")
 
 
-def gathered(corners: Array, counts: Array) -> Union[Array, list]:
+def gathered(corners: Array, counts: Array) -> Gathered:
     """Faces as one array where all have as many corners, else a list of arrays."""
     if len(counts) and (counts == counts[0]).all():
         return corners.reshape(len(counts), counts[0])

@@ -10,7 +10,7 @@ from typing import Any, Iterable, Iterator, List, NamedTuple, Union
 import numpy as np
 
 from . import _native
-from ._shapes import Array, Path, gathered
+from ._shapes import Array, Gathered, Path, gathered
 
 #: Kinds of creature.
 PLANS = ("quadruped", "person", "bird", "insect", "head")
@@ -21,9 +21,9 @@ VARIANTS = ("mesh", "cloud", "cracked", "half-scan")
 class Pair(NamedTuple):
     """A source, a target in other triangles, and where each vertex of the source truly belongs."""
 
-    source: "tuple[Array, Union[Array, list]]"
+    source: "tuple[Array, Gathered]"
     """Vertices (n, 3) and faces."""
-    target: "Union[Array, tuple[Array, Union[Array, list]]]"
+    target: "Union[Array, tuple[Array, Gathered]]"
     """Vertices and faces, or the points of a cloud."""
     landmarks: "List[dict[str, Any]]"
     """Entries of a landmark file."""

@@ -185,6 +185,6 @@ def test_the_extension_is_whole(tmp_path):
     build = Path(addon.__file__).parents[1] / "build.py"
     subprocess.run([sys.executable, build, built, wheel], check=True)
     assert f"wheels/{wheel.name}" in zipfile.ZipFile(built).namelist()
-    judge = next(Path(bpy.__file__).parent.glob("*/scripts/addons_core/bl_pkg/cli/blender_ext.py"))
+    judge = Path(bpy.utils.system_resource("SCRIPTS")) / "addons_core/bl_pkg/cli/blender_ext.py"
     judged = subprocess.run([sys.executable, judge, "validate", built], capture_output=True, text=True)
     assert judged.returncode == 0, judged.stdout + judged.stderr
