@@ -40,5 +40,5 @@ if ! "$env/python" -c 'import bpy' 2>/dev/null; then
     step $as_root apt-get install -y --no-install-recommends libgl1 libegl1 libsm6 libxfixes3 libxi6 libxkbcommon0 libxrender1 libxxf86vm1
 fi
 # A Blender of its own, without what someone set up on this machine.
-export BLENDER_USER_RESOURCES=$work/blender MESH_DRAPING_WHEEL=$wheel
+export BLENDER_USER_RESOURCES=$work/blender
 step "$env/pytest" -q "$here/blender/tests" --basetemp "$work/blender-tests"

@@ -1,6 +1,6 @@
 //! Creatures built in code, whose truth is known.
 
-use mesh_creatures::{CreaturePair, Dial, Individual, PairConfig, Plan};
+use mesh_creatures::{CreaturePair, Dial, Individual, PairConfig, Plan, Variant};
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 
@@ -31,7 +31,7 @@ impl Creature {
         let wrong =
             |what: &str, error: &dyn std::fmt::Display| Error::new_err(format!("{what}: {error}"));
         let plan = plan.parse().map_err(|error| wrong(plan, &error))?;
-        let variant = variant.parse().map_err(|error| wrong(variant, &error))?;
+        let variant: Variant = variant.parse().map_err(|error| wrong(variant, &error))?;
         check_dial(angle, ratio)?;
         let config = PairConfig {
             variant,
