@@ -8,6 +8,18 @@ step() {
     "$@"
 }
 
+# Packages of the system behind a module that cannot be imported without them.
+needs() {
+    local module=$1
+    shift
+    if ! "$env/python" -c "import $module" 2>/dev/null; then
+        local as_root
+        as_root=$([ "$(id -u)" = 0 ] || echo sudo)
+        step $as_root apt-get update
+        step $as_root apt-get install -y --no-install-recommends "$@"
+    fi
+}
+
 # Blender 5.0, the last one as a module for this Python, needs 3.11; the wheel works from 3.10 on.
 python=$(command -v python3.11 || command -v python3)
 "$python" --version >/dev/null 2>&1 || python=$(command -v python3)
@@ -19,8 +31,9 @@ env=$work/env/bin
 step "$env/pip" install --quiet --disable-pip-version-check "maturin>=1.9,<2"
 step "$env/maturin" build --release --out "$work/dist"
 wheel=$(echo "$work"/dist/*.whl)
-step "$env/pip" install --quiet --disable-pip-version-check "$wheel[progress,trimesh,farm]" -r tests/requirements.txt
+step "$env/pip" install --quiet --disable-pip-version-check "$wheel[progress,trimesh,farm,face]" -r tests/requirements.txt
 step "$env/pip" uninstall --quiet --yes maturin
+needs cv2 libgl1 libglib2.0-0
 
 # The tests see the package that is installed, not the folder of this name.
 here=$PWD
@@ -34,11 +47,7 @@ if ! "$env/python" -c 'import sys; sys.exit(sys.version_info[:2] != (3, 11))'; t
     exit 0
 fi
 step "$env/pip" install --quiet --disable-pip-version-check -r "$here/blender/tests/requirements.txt"
-if ! "$env/python" -c 'import bpy' 2>/dev/null; then
-    as_root=$([ "$(id -u)" = 0 ] || echo sudo)
-    step $as_root apt-get update
-    step $as_root apt-get install -y --no-install-recommends libgl1 libegl1 libsm6 libxfixes3 libxi6 libxkbcommon0 libxrender1 libxxf86vm1
-fi
+needs bpy libegl1 libsm6 libxfixes3 libxi6 libxkbcommon0 libxrender1 libxxf86vm1
 # A Blender of its own, without what someone set up on this machine.
 export BLENDER_USER_RESOURCES=$work/blender
 step "$env/pytest" -q "$here/blender/tests" --basetemp "$work/blender-tests"

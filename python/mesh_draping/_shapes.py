@@ -151,9 +151,9 @@ def _is_path(mesh: Any) -> bool:
 
 def _arrays(mesh: Any) -> "Tuple[Any, Any, Any]":
     """Vertices, faces and normals of a mesh in memory; the last two may lack."""
-    if isinstance(mesh, np.ndarray):
+    if isinstance(mesh, (np.ndarray, list)):
         return mesh, None, None
-    if isinstance(mesh, (tuple, list)) and len(mesh) in (2, 3):
+    if isinstance(mesh, tuple) and len(mesh) in (2, 3):
         vertices, faces, *normals = mesh
         return vertices, faces, (normals or [None])[0]
     if hasattr(mesh, "polygons") or hasattr(getattr(mesh, "data", None), "polygons"):

@@ -120,7 +120,7 @@ def _listed(landmarks: Any) -> "List[Entry]":
 
 def _is_two_arrays(landmarks: Any) -> bool:
     is_pair = isinstance(landmarks, (tuple, list)) and len(landmarks) == 2
-    return is_pair and np.ndim(landmarks[0]) == 1 and np.ndim(landmarks[1]) == 2
+    return is_pair and all(isinstance(part, np.ndarray) and part.ndim == n for n, part in enumerate(landmarks, 1))
 
 
 def _entry(item: Any) -> Entry:

@@ -27,6 +27,7 @@ def test_lists_of_polygons_and_of_pairs_give_its_bits(pair, commanded):
     pairs = [(l["source"]["vertex"], l["target"]["point"]) for l in pair.landmarks]
     result = md.drape(source, (points, triangles.tolist()), pairs, "quick", 3, **SHORT)
     assert np.array_equal(result.vertices, commanded)
+    assert len(md.landmarks.check(pairs[:2], source, pair.target).residuals) == 2
     arrays = tuple(map(np.array, zip(*pairs)))
     assert len(md.landmarks.check(arrays, source, pair.target).residuals) == len(pairs)
 

@@ -1,6 +1,7 @@
 """The template for render farms, by the tool of its makers."""
 
 import json
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -12,9 +13,11 @@ TEMPLATE = Path(__file__).parents[1] / "openjd/drape-batch.yaml"
 
 
 def openjd(*arguments):
-    ended = subprocess.run(
-        [Path(sys.executable).with_name("openjd"), *map(str, arguments)], capture_output=True, text=True
-    )
+    programs = Path(sys.executable).parent
+    # The template calls `drape`, as a machine of a farm has it.
+    env = {**os.environ, "PATH": f"{programs}:{os.environ['PATH']}"}
+    line = [programs / "openjd", *map(str, arguments)]
+    ended = subprocess.run(line, capture_output=True, text=True, env=env)
     assert ended.returncode == 0, ended.stdout + ended.stderr
     return ended.stdout
 
