@@ -56,6 +56,8 @@ YAWS, PITCHES = (-30, -15, 0, 15, 30), (-15, 0, 15)
 AGREE = 0.02
 #: A place that fewer views agree on is not marked.
 LEAST_VIEWS = 3
+#: Of a face whose size is to be known, this many places must be on the surface.
+LEAST_PLACES = 8
 
 
 class Mark(NamedTuple):
@@ -104,7 +106,10 @@ def find(mesh: Any) -> Dict[str, Mark]:
     if first is None:
         return {}
     seen = _places(surface, first, detector)
-    face = np.nanmedian(seen, axis=0), float(np.nanmax(np.ptp(seen, axis=0)))
+    seen = seen if seen is None else seen[np.isfinite(seen).all(axis=1)]
+    if seen is None or len(seen) < LEAST_PLACES:
+        return {}
+    face = np.median(seen, axis=0), float(np.ptp(seen, axis=0).max())
     found = [_places(surface, view, detector) for view in _around(first, *face)]
     return _agreed([f for f in found if f is not None], len(found), face[1])
 
