@@ -12,13 +12,11 @@ pub(crate) type Rows<'py> = PyReadonlyArray2<'py, f64>;
 /// The rows of an array of shape (n, 3), each made into something.
 fn rows<T>(array: &Rows<'_>, what: &str, row: impl Fn(&[f64]) -> T) -> PyResult<Vec<T>> {
     let wrong = || Error::new_err(format!("{what} must be an array of shape (n, 3)"));
-    let is_wide = array.as_array().ncols() == 3;
-    let numbers = array.as_slice().ok().filter(|_| is_wide);
-    Ok(numbers
-        .ok_or_else(wrong)?
-        .chunks_exact(3)
-        .map(row)
-        .collect())
+    let view = array.as_array();
+    // None where the rows do not lie one after the other.
+    let numbers = view.as_slice().filter(|_| view.ncols() == 3);
+    let rows = numbers.ok_or_else(wrong)?.chunks_exact(3);
+    Ok(rows.map(row).collect())
 }
 
 /// Points from an array of shape (n, 3).

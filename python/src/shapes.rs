@@ -15,12 +15,12 @@ use crate::error::{told, waited, Error};
 type Polygons<'py> = (Bound<'py, PyArray1<i64>>, Bound<'py, PyArray1<i64>>);
 
 /// The mesh to deform.
-#[pyclass(frozen, skip_from_py_object, module = "mesh_draping")]
+#[pyclass(frozen, module = "mesh_draping")]
 #[derive(Clone)]
 pub(crate) struct Source(pub(crate) mesh_draping::Source);
 
 /// The shape to drape over.
-#[pyclass(frozen, skip_from_py_object, module = "mesh_draping")]
+#[pyclass(frozen, module = "mesh_draping")]
 #[derive(Clone)]
 pub(crate) struct Target(pub(crate) mesh_draping::Target);
 
