@@ -36,9 +36,13 @@ def folder(tmp_path_factory):
 
 
 @pytest.fixture(scope="session")
-def pair():
-    """The same head in memory."""
-    return md.bench.pair("head", seed=1, landmarks=10)
+def pair(folder):
+    """The same head in memory: the very numbers of the files, whose faces go part by part."""
+    made = md.bench.pair("head", seed=1, landmarks=10)
+    source, target = md.Source(folder / "source.obj"), md.Source(folder / "target.ply", weld="off")
+    return made._replace(
+        source=(source.vertices, source.faces), target=(target.vertices, target.faces)
+    )
 
 
 @pytest.fixture(scope="session")
