@@ -1,10 +1,12 @@
 """The compiled part: arrays in, arrays out. The modules beside it are what to call."""
 
 from os import PathLike
-from typing import Dict, List, Optional, Sequence, Tuple, Union
+from typing import Dict, List, Optional, Sequence, Tuple, Union, final
 
 import numpy as np
 from numpy.typing import NDArray
+
+__all__: List[str]
 
 Path = Union[str, PathLike[str]]
 Rows = NDArray[np.float64]
@@ -17,6 +19,7 @@ class Error(ValueError):
 class Cancelled(Exception):
     """The drape was cancelled: nothing is left of it."""
 
+@final
 class Source:
     @staticmethod
     def read(path: Path, weld: str = "0", morph_targets: str = "keep") -> Source: ...
@@ -31,6 +34,7 @@ class Source:
     def polygons(self) -> Polygons: ...
     def write(self, path: Path, vertices: Rows) -> None: ...
 
+@final
 class Target:
     @staticmethod
     def read(path: Path) -> Target: ...
@@ -43,6 +47,7 @@ class Target:
     @property
     def notes(self) -> List[str]: ...
 
+@final
 class Landmarks:
     @staticmethod
     def none() -> Landmarks: ...
@@ -59,6 +64,7 @@ class Landmarks:
     def suggest(self, source: Source, target: Target, n: int) -> str: ...
     def mirrored(self, source: Source, target: Target) -> Landmarks: ...
 
+@final
 class Surface:
     @staticmethod
     def of_source(source: Source) -> Surface: ...
@@ -66,17 +72,19 @@ class Surface:
     def of_target(target: Target) -> Optional[Surface]: ...
     def cast(self, origins: Rows, directions: Rows) -> NDArray[np.float64]: ...
 
+@final
 class Settings:
-    def __init__(
-        self, preset: Optional[str], config: Optional[Path], seed: Optional[int], changes: str
-    ) -> None: ...
+    def __new__(
+        cls, preset: Optional[str], config: Optional[Path], seed: Optional[int], changes: str
+    ) -> Settings: ...
     def toml(self) -> str: ...
     @staticmethod
     def names() -> List[str]: ...
 
+@final
 class Inputs:
-    def __init__(
-        self,
+    def __new__(
+        cls,
         source: Source,
         target: Target,
         landmarks: Landmarks,
@@ -87,8 +95,9 @@ class Inputs:
         weights: Optional[str],
         hidden: bool,
         symmetric: bool,
-    ) -> None: ...
+    ) -> Inputs: ...
 
+@final
 class Step:
     """What an iteration did."""
 
@@ -105,8 +114,9 @@ class Step:
     def terms(self) -> Dict[str, Tuple[float, float]]:
         """Value and weight of each term, before the step."""
 
+@final
 class Draping:
-    def __init__(self, inputs: Inputs, settings: Settings, truth: Optional[Rows], start: Optional[Rows]) -> None: ...
+    def __new__(cls, inputs: Inputs, settings: Settings, truth: Optional[Rows], start: Optional[Rows]) -> Draping: ...
     def step(self) -> Optional[Step]: ...
     @property
     def iteration(self) -> int: ...
@@ -125,6 +135,7 @@ class Draping:
     def extend(self, n_iterations: int) -> None: ...
     def finish(self) -> Outcome: ...
 
+@final
 class Outcome:
     @property
     def vertices(self) -> Rows: ...
@@ -141,16 +152,18 @@ class Outcome:
     def carry(self, displacements: Rows) -> Rows: ...
     def warp(self) -> Warp: ...
 
+@final
 class Warp:
     @staticmethod
     def load(path: Path) -> Warp: ...
     def save(self, path: Path) -> None: ...
     def apply(self, points: Rows) -> Rows: ...
 
+@final
 class Creature:
-    def __init__(
-        self, plan: str, *, seed: int, angle: float, ratio: float, landmarks: int, variant: str
-    ) -> None: ...
+    def __new__(
+        cls, plan: str, *, seed: int, angle: float, ratio: float, landmarks: int, variant: str
+    ) -> Creature: ...
     @staticmethod
     def posed(plan: str, *, seed: int, frame: int, angle: float, ratio: float, landmarks: int) -> Creature: ...
     @property
