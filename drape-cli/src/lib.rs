@@ -14,6 +14,7 @@ mod creatures;
 mod inspection;
 mod output;
 mod profile;
+mod program;
 mod progress;
 mod requirement;
 mod study;
@@ -27,6 +28,8 @@ use std::process::ExitCode;
 use anyhow::Context as _;
 use clap::error::ErrorKind;
 use clap::Parser;
+
+pub use program::Program;
 
 /// No more threads are started, whatever is asked for: each takes memory, and none beyond the processors helps.
 const MAX_THREADS: usize = 512;
@@ -46,6 +49,18 @@ struct Cli {
 
 /// Runs the command line `args`, program name first. Exit codes: 0 done, 1 a requirement is not met, 2 failed.
 pub fn run(args: impl IntoIterator<Item = OsString>) -> ExitCode {
+    match Program::of_process() {
+        Ok(program) => run_as(program, args),
+        Err(error) => {
+            eprintln!("error: cannot find this program to run it again: {error}");
+            ExitCode::from(FAILED)
+        }
+    }
+}
+
+/// As [`run`], for a program that is not the running executable: a script of another language's package.
+pub fn run_as(program: Program, args: impl IntoIterator<Item = OsString>) -> ExitCode {
+    program.remember();
     let cli = match Cli::try_parse_from(args) {
         Ok(cli) => cli,
         Err(error) => return refuse(&error),

@@ -9,6 +9,7 @@
 //! | measure polygons as triangles, ask what touches what | [`Triangulation::new`] |
 //! | query a target | [`TriangleSoup::new`], [`PointCloud::new`], [`TargetSurface`] |
 //! | query a moving mesh | [`TriangleBvh`] |
+//! | tell what a map of a surface does to directions | [`map_gradients`] |
 //! | draw random places | [`sampling::TriangleSampler`], [`sampling::SeededRng`] |
 //! | mark pairs of places | [`Landmark`] |
 //! | let a coarse mesh stand in for a dense one | [`Proxy`] |
@@ -30,6 +31,7 @@ mod build;
 pub mod bvh;
 mod error;
 mod fans;
+mod gradients;
 mod halfedge;
 mod ids;
 pub mod io;
@@ -53,6 +55,7 @@ pub use boundary::Boundary;
 pub use bvh::TriangleBvh;
 pub use error::TopologyError;
 pub use fans::{is_on_side, TriangleFans, ON_SIDE};
+pub use gradients::map_gradients;
 pub use halfedge::HalfedgeMesh;
 pub use ids::{EdgeId, FaceId, HalfedgeId, Id, VertexId};
 pub use landmark::{Landmark, LandmarkKind, MeshPoint};

@@ -12,6 +12,7 @@ use crate::explain::Counted;
 use crate::stages::{DRAPING, REFINING};
 use crate::stand_in::StandIn;
 use crate::start::Start;
+use crate::symmetric::Opposites;
 use crate::{Error, History, Note, Outcome, Pair, Preset, Stages};
 
 /// Iterations on a dense source itself, after its stand-in was draped.
@@ -60,6 +61,8 @@ pub struct Draping {
     notes: Vec<Note>,
     history: History,
     stages: Stages,
+    /// Where the result shall be symmetric.
+    opposites: Option<Opposites>,
 }
 
 /// What a drape starts from beside its pair.
@@ -69,6 +72,9 @@ pub(crate) struct Beginning {
     pub(crate) notes: Vec<Note>,
     pub(crate) truth: Option<Positions>,
     pub(crate) stages: Stages,
+    /// A shape that nearly fits, where one is known.
+    pub(crate) start: Option<Positions>,
+    pub(crate) is_symmetric: bool,
     pub(crate) is_stand_in_allowed: bool,
 }
 
@@ -81,10 +87,15 @@ impl Draping {
             mut notes,
             truth,
             mut stages,
+            start,
+            is_symmetric,
             is_stand_in_allowed,
         } = beginning;
+        let opposites = is_symmetric.then(|| Opposites::of(&pair.source));
+        let opposites = opposites.transpose()?;
         pair.check_landmarks(&pair.landmarks)?;
         pair.check_lengths(&regions, truth.as_ref())?;
+        pair.check_start(start.as_ref())?;
         let is_dense = is_stand_in_allowed && StandIn::is_needed(&pair, &preset);
         let stand_in = is_dense.then(|| stages.time("stand-in", || StandIn::new(&pair)));
         let stand_in = stand_in.transpose()?;
@@ -97,8 +108,9 @@ impl Draping {
             shape,
             by_landmarks,
             drape: config,
-        } = stages.time("initial deformation", || {
-            Start::choose(draped_pair, &preset, &first_regions)
+        } = stages.time("initial deformation", || match &start {
+            Some(shape) => Start::of_shape(draped_pair, &preset, shape),
+            None => Start::choose(draped_pair, &preset, &first_regions),
         })?;
         let initial = shape.positions;
         notes.extend(shape.notes);
@@ -125,6 +137,7 @@ impl Draping {
             notes,
             history: History::default(),
             stages,
+            opposites,
         };
         draping.drape.set_profile(draping.stages.fresh_parts());
         Ok(draping)
@@ -360,6 +373,10 @@ impl Draping {
         let draped = match &self.stand_in {
             Some(stand_in) => stand_in.carry(&end.positions),
             None => end.positions.clone(),
+        };
+        let draped = match &self.opposites {
+            Some(opposites) => opposites.symmetrised(&draped),
+            None => draped,
         };
         let is_refined = self.n_before > 0;
         if self.stand_in.is_none() {

@@ -21,6 +21,8 @@
 //! | treat parts in their own way | [`Parts`], [`parts`] |
 //! | drape | [`Transfer::run`] |
 //! | drape step by step, pause, change landmarks, resume | [`Transfer::start`], [`Draping`] |
+//! | start from a shape that nearly fits | [`Transfer::with_start`] |
+//! | get a result as symmetric as the source | [`Transfer::symmetric`] |
 //! | drape on a thread of its own | [`Draping::spawn`], [`Background`] |
 //! | use the result | [`Outcome`] |
 //! | deform by landmarks only | [`initial_deformation`] |
@@ -49,6 +51,7 @@ mod source;
 mod stages;
 mod stand_in;
 mod start;
+mod symmetric;
 mod target;
 mod transfer;
 

@@ -93,11 +93,27 @@ impl Pair {
         truth: Option<&Positions>,
     ) -> Result<(), DrapeError> {
         let expected = self.source.rest().len();
-        let lengths = [
+        self.check_each([
             ("the attraction of the regions", regions.attraction.len()),
             ("the rigid regions", regions.rigid.len()),
             ("the truth", truth.map_or(expected, Positions::len)),
-        ];
+        ])
+    }
+
+    /// Whether a shape to start from has a position for each vertex of the source.
+    pub(crate) fn check_start(&self, start: Option<&Positions>) -> Result<(), DrapeError> {
+        let expected = self.source.rest().len();
+        self.check_each([(
+            "the shape to start from",
+            start.map_or(expected, Positions::len),
+        )])
+    }
+
+    fn check_each<const N: usize>(
+        &self,
+        lengths: [(&'static str, usize); N],
+    ) -> Result<(), DrapeError> {
+        let expected = self.source.rest().len();
         match lengths.into_iter().find(|(_, found)| *found != expected) {
             Some((what, found)) => Err(DrapeError::LengthMismatch {
                 what,

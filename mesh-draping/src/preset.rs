@@ -143,6 +143,21 @@ impl Preset {
         over(table, preset).map_err(of_file)
     }
 
+    /// These settings, and the text of a TOML file over them, as in [`Self::from_toml`].
+    ///
+    /// ```
+    /// use mesh_draping::Preset;
+    /// let preset = Preset::quick().with_toml("[sampling]\nn_samples = 500\n")?;
+    /// assert_eq!((preset.name.as_str(), preset.drape.sampling.n_samples), ("quick", 500));
+    /// # Ok::<(), mesh_draping::preset::PresetError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`Self::from_toml`].
+    pub fn with_toml(self, text: &str) -> Result<Self, PresetError> {
+        Ok(over_preset(parse(text)?, self)?)
+    }
+
     /// The settings as a TOML text that [`Self::from_toml`] reads back.
     pub fn to_toml(&self) -> String {
         // Settings are tables of numbers and names, so that this never fails.
@@ -222,12 +237,17 @@ fn parse(text: &str) -> Result<Table, PresetProblem> {
 /// default.
 fn over(mut overrides: Table, preset: Option<&str>) -> Result<Preset, PresetProblem> {
     let named: Option<String> = take(&mut overrides, "preset")?;
-    let initial: Option<InitialMethod> = take(&mut overrides, "initial")?;
     let name = preset.map(str::to_owned).or(named);
     let preset = match name {
         Some(name) => Preset::named(&name).map_err(|error| error.problem)?,
         None => Preset::standard(),
     };
+    over_preset(overrides, preset)
+}
+
+/// The settings of `overrides` over these.
+fn over_preset(mut overrides: Table, preset: Preset) -> Result<Preset, PresetProblem> {
+    let initial: Option<InitialMethod> = take(&mut overrides, "initial")?;
     let setting =
         |error: &dyn std::fmt::Display| PresetProblem::Setting(plain_words(&error.to_string()));
     let mut merged = Value::try_from(&preset.drape).map_err(|error| setting(&error))?;

@@ -53,6 +53,34 @@ fn suggest_names_a_place_far_from_the_others() {
 }
 
 #[test]
+fn point_files_of_wrap_are_written_and_read() {
+    let place = Workplace::new();
+    let line = "landmarks convert source.obj target.ply";
+    place
+        .drape(&format!(
+            "{line} landmarks.json -o a.json --target-output b.json"
+        ))
+        .well();
+    let on_source: Value = serde_json::from_str(&place.read("a.json")).expect("JSON");
+    assert_eq!(on_source["right"].as_array().map(Vec::len), Some(3));
+    place
+        .drape(&format!(
+            "{line} a.json --target-points b.json -o back.json"
+        ))
+        .well();
+    let [before, after] = ["landmarks.json", "back.json"].map(|name| {
+        let json: Value = serde_json::from_str(&place.read(name)).expect("JSON");
+        let list = json["landmarks"].as_array().expect("a list").clone();
+        list.iter()
+            .map(|l| l["name"].as_str().map(str::to_owned))
+            .collect::<std::collections::BTreeSet<_>>()
+    });
+    assert_eq!(before, after);
+    let lone = place.drape(&format!("{line} a.json -o back.json"));
+    assert_eq!((lone.code, lone.stderr.lines().count()), (Some(2), 1));
+}
+
+#[test]
 fn mirror_adds_the_other_half() {
     let place = Workplace::new();
     let json = json!({"landmarks": [

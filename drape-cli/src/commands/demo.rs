@@ -26,6 +26,8 @@ pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let files = creatures::write(&args.output, &creatures::demo_pair())?;
     let name = |name: &str| args.output.join(name);
     let transfer = transfer::Args {
+        from: None,
+        symmetric: false,
         profile: ProfileArgs { profile: false },
         source: files.source,
         target: files.target,

@@ -8,7 +8,7 @@ use anyhow::ensure;
 use clap::Subcommand;
 use mesh_core::io::write_atomic;
 use mesh_core::Landmark;
-use mesh_draping::landmarks::{self, leave_one_out_residuals, Finding, Form, Label};
+use mesh_draping::landmarks::{self, leave_one_out_residuals, Finding, Form, Label, WrapPoints};
 use mesh_draping::{Pair, Seams};
 
 use crate::args::{Inputs, PipeArgs};
@@ -29,7 +29,19 @@ enum Task {
     /// Add the landmarks of the other half of a symmetric source
     Mirror(Output),
     /// Write landmarks in another form
-    Convert(Output),
+    Convert(Convert),
+}
+
+#[derive(Debug, clap::Args)]
+struct Convert {
+    #[command(flatten)]
+    output: Output,
+    /// LANDMARKS is a point file of Faceform Wrap on the source, [[triangle, u, v], …], and this the one on the target
+    #[arg(long, value_name = "FILE")]
+    target_points: Option<PathBuf>,
+    /// Write point files of Faceform Wrap: -o on the source, and this on the target
+    #[arg(long, value_name = "OUT", conflicts_with = "to")]
+    target_output: Option<PathBuf>,
 }
 
 #[derive(Debug, clap::Args)]
@@ -95,10 +107,14 @@ impl From<FormArg> for Form {
 
 impl Files {
     fn read(&self) -> anyhow::Result<Pair> {
+        self.read_with(Some(&self.landmarks))
+    }
+
+    fn read_with(&self, landmarks: Option<&Path>) -> anyhow::Result<Pair> {
         let inputs = Inputs {
             source: &self.source,
             target: &self.target,
-            landmarks: Some(&self.landmarks),
+            landmarks,
             seams: Seams::EXACT,
             output: None,
             pipe: PipeArgs::default(),
@@ -112,11 +128,7 @@ pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
         Task::Check(files) => check(files),
         Task::Suggest(args) => next(args),
         Task::Mirror(args) => add_mirrored(args),
-        Task::Convert(args) => {
-            args.check()?;
-            let pair = args.files.read()?;
-            args.write(&pair, &pair.landmarks)
-        }
+        Task::Convert(args) => args.run(),
     }
 }
 
@@ -229,6 +241,50 @@ fn add_mirrored(args: &Output) -> anyhow::Result<ExitCode> {
     say(&text)?;
     let all: Vec<Landmark> = pair.landmarks.iter().chain(&added).cloned().collect();
     args.write(&pair, &all)
+}
+
+impl Convert {
+    fn run(&self) -> anyhow::Result<ExitCode> {
+        let output = &self.output;
+        output.check()?;
+        let pair = self.read()?;
+        let Some(path) = &self.target_output else {
+            return output.write(&pair, &pair.landmarks);
+        };
+        check_writable(path)?;
+        let files = &output.files;
+        check_distinct(path, &[&files.source, &files.target, &files.landmarks])?;
+        ensure!(
+            *path != output.output,
+            "--target-output is the same file as -o"
+        );
+        let written = landmarks::write_wrap(&pair.landmarks, &pair.source, &pair.target)?;
+        write_atomic(&output.output, written.source.as_bytes())?;
+        write_atomic(path, written.target.as_bytes())?;
+        say(&format!(
+            "wrote {} and {}\n",
+            output.output.display(),
+            path.display()
+        ))?;
+        Ok(ExitCode::SUCCESS)
+    }
+
+    fn read(&self) -> anyhow::Result<Pair> {
+        let files = &self.output.files;
+        let Some(target) = &self.target_points else {
+            return files.read();
+        };
+        let shapes = files.read_with(None)?;
+        let points = WrapPoints {
+            source: files.landmarks.as_path(),
+            target: target.as_path(),
+        };
+        let landmarks = landmarks::read_wrap(points, &shapes.source, &shapes.target)?;
+        Ok(Pair {
+            landmarks,
+            ..shapes
+        })
+    }
 }
 
 impl Output {

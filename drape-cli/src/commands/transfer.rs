@@ -54,6 +54,13 @@ pub(crate) struct Args {
     /// Mesh whose vertices are where those of the result belong, to judge by
     #[arg(long, value_name = "FILE")]
     pub(super) truth: Option<PathBuf>,
+    /// Start from this shape of the source, the result of the frame before: no start is searched, and the run is a third
+    /// as long
+    #[arg(long, value_name = "FILE")]
+    pub(super) from: Option<PathBuf>,
+    /// Make the result as symmetric as the source is
+    #[arg(long)]
+    pub(super) symmetric: bool,
     /// Save the map, for `drape apply`
     #[arg(long, value_name = "WARP")]
     pub(super) warp: Option<PathBuf>,
@@ -100,6 +107,10 @@ pub(super) fn drape_files(args: &Args) -> anyhow::Result<Done<'_>> {
     let truth = truth
         .map(|path| read_truth(path, &pair.source))
         .transpose()?;
+    let start = args.from.as_deref();
+    let start = start
+        .map(|path| read_truth(path, &pair.source))
+        .transpose()?;
     let mut warnings = words::about_inputs(&pair);
     if let Some(file) = pair.source.file() {
         warnings.extend(
@@ -116,6 +127,12 @@ pub(super) fn drape_files(args: &Args) -> anyhow::Result<Done<'_>> {
         .with_stages(stages);
     if let Some(truth) = truth.clone() {
         transfer = transfer.with_truth(truth);
+    }
+    if args.symmetric {
+        transfer = transfer.symmetric();
+    }
+    if let Some(start) = start {
+        transfer = transfer.with_start(start);
     }
     let mut outcome = drape(transfer)?;
     let notes: Vec<String> = words::notes(&outcome.notes).collect();
@@ -154,6 +171,7 @@ fn check_outputs(args: &Args) -> anyhow::Result<()> {
         Some(&args.target),
         args.landmarks.as_ref(),
         args.truth.as_ref(),
+        args.from.as_ref(),
     ]
     .into_iter()
     .flatten()

@@ -51,6 +51,7 @@ mod triangles;
 mod uvs;
 mod xyz;
 
+pub(crate) use contents::unit;
 pub use contents::{Contents, Morphs, NamedFaces};
 pub use error::{Place, ReadError, ReadProblem, WriteError};
 pub use file::{read_mesh, read_points, read_soup, read_stream, MeshFile, PointSet};

@@ -134,6 +134,24 @@ pub enum LandmarkProblem {
         /// The face.
         face: usize,
     },
+    /// Files of points without names, that do not belong together one by one.
+    #[error("{n_source} points on the source but {n_target} on the target")]
+    PointCounts {
+        /// How many there are of the one.
+        n_source: usize,
+        /// How many of the other.
+        n_target: usize,
+    },
+    /// A triangle of the fans of a shape that is not there.
+    #[error("the {shape} has no triangle {triangle}: its polygons are {n} triangles in fans, counted from 0")]
+    NoFanTriangle {
+        /// Whose triangle.
+        shape: Shape,
+        /// Its number.
+        triangle: usize,
+        /// How many there are.
+        n: usize,
+    },
     /// A coordinate that is NaN, infinite, or too large to be squared.
     #[error("{shape} point is not finite, or farther from the origin than 1e150")]
     NotFinite {

@@ -6,7 +6,7 @@
 //! ```
 //! A source is `{"vertex": v}`, `{"face": f, "barycentric": [..]}` with one weight per corner, or `{"point": [..]}`
 //! (the closest place of the source's surface); a target is `{"vertex": v}` or `{"point": [..]}`. All numbers count
-//! from 0.
+//! from 0. A landmark that a detector found may say its `confidence`, which is not read.
 
 use mesh_core::{LandmarkKind, Point3};
 use serde_json::{Map, Value};
@@ -45,7 +45,7 @@ fn entry((index, item): (usize, &Value)) -> Result<Entry, LandmarkError> {
 }
 
 fn read_entry(item: &Value) -> Result<Entry, LandmarkProblem> {
-    let item = object(item, "a landmark", "name, source, target, kind")?;
+    let item = object(item, "a landmark", "name, source, target, kind, confidence")?;
     let needed = |key: &str, shape, forms| {
         let place = item.get(key);
         place.ok_or(LandmarkProblem::Place { shape, forms })

@@ -8,7 +8,7 @@ use super::Label;
 use crate::{Pair, Similarity, Source, Target};
 
 /// A source whose mirror image is farther from it, on the mean and in longest sides of its box, is not symmetric.
-const SYMMETRIC: f64 = 0.01;
+pub(crate) const SYMMETRIC: f64 = 0.01;
 /// Places nearer to each other than this share of the longest side are one.
 const SAME: f64 = 0.01;
 /// Places that spread less across their line than this share of the spread along it, squared, span no plane.

@@ -4,6 +4,7 @@
 //! |---|---|
 //! | read a landmark file of any form | [`read`], [`parse`] |
 //! | write one | [`write()`] |
+//! | read and write the two point files of Faceform Wrap | [`read_wrap`], [`write_wrap`] |
 //! | find what is probably wrong | [`Pair::findings`](crate::Pair::findings), [`leave_one_out_residuals`] |
 //! | mark the other half of a symmetric source | [`mirror()`]; for one landmark, [`counterpart()`] |
 //! | find how symmetric a shape is | [`source_symmetry()`], [`target_symmetry()`] |
@@ -19,6 +20,7 @@ mod lines;
 mod mirror;
 mod suggest;
 mod ways;
+mod wrap;
 mod write;
 
 pub use doctor::leave_one_out_residuals;
@@ -30,9 +32,11 @@ pub use mirror::{
     Plane, Symmetry,
 };
 pub use suggest::{suggest, Suggestion};
+pub use wrap::{read_wrap, write_wrap, WrapPoints};
 pub use write::{write, Form, WrittenLandmarks};
 
 pub(crate) use doctor::examine;
+pub(crate) use mirror::SYMMETRIC;
 
 use std::fs;
 use std::path::Path;

@@ -11,7 +11,9 @@ use rayon::prelude::*;
 
 use crate::initial::ENOUGH_TO_STAND;
 use crate::stand_in::StandIn;
-use crate::{initial_deformation, Error, InitialMethod, InitialShape, Pair, Preset};
+use crate::{
+    adjusted, initial_deformation, Draping, Error, InitialMethod, InitialShape, Pair, Preset,
+};
 use trial::Trial;
 
 /// Vertices of the stand-in that starts are tried on.
@@ -46,6 +48,24 @@ impl Start {
             let _ = start.improve(pair, preset, regions);
         }
         Ok(start)
+    }
+
+    /// A shape that nearly fits, brought to the landmarks, and the end of a run from there.
+    ///
+    /// # Errors
+    /// As [`adjusted`].
+    pub(crate) fn of_shape(pair: &Pair, preset: &Preset, shape: &Positions) -> Result<Self, Error> {
+        let positions = match pair.landmarks.is_empty() {
+            true => shape.clone(),
+            false => adjusted(pair, shape)?,
+        };
+        Ok(Self {
+            shape: InitialShape {
+                positions,
+                notes: Vec::new(),
+            },
+            drape: preset.drape.refining(Draping::n_more(preset)),
+        })
     }
 
     /// Tries this start and those that are led along the surfaces, and becomes the best of them; where all are poor, a

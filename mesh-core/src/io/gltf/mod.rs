@@ -7,7 +7,6 @@ mod container;
 mod extensions;
 mod file;
 mod frame;
-mod gradient;
 mod json;
 mod json_spans;
 mod morphs;

@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use nalgebra::Matrix3;
 use rayon::prelude::*;
 
-use crate::io::contents::unit;
+use crate::io::unit;
 use crate::{Point3, PolygonSoup, Vector3};
 
 /// Radius around a vertex in which triangles count, as a share of the root of the whole area at rest. Displacements are longer
@@ -28,7 +28,10 @@ struct Piece {
 /// their normal of length `√(2 |A_f|)` to those of the moved one (the fourth corner of Sumner and Popović 2004, Eq. 1),
 /// so that J is exact where the map turns, scales and shifts. Vertices that end at one place share theirs: the copies
 /// of a vertex that is split along a seam. A vertex without a triangle near it has the mean of all.
-pub(super) fn gradients(rest: &PolygonSoup, moved: &[Point3]) -> Vec<Option<Matrix3<f64>>> {
+///
+/// # Panics
+/// If there is not one position per vertex of `rest`, or a face names a vertex that is not there.
+pub fn map_gradients(rest: &PolygonSoup, moved: &[Point3]) -> Vec<Option<Matrix3<f64>>> {
     let place_of = places(moved);
     let mut at_vertex = vec![Sum::default(); moved.len()];
     let mut total = Sum::default();
@@ -192,7 +195,7 @@ mod tests {
             .iter()
             .map(|p| Point3::from(similar * p.coords) + Vector3::new(5.0, -1.0, 3.0))
             .collect();
-        for map in gradients(&soup, &moved) {
+        for map in map_gradients(&soup, &moved) {
             assert!((map.unwrap() - similar).norm() < 1e-10);
         }
     }
@@ -207,10 +210,10 @@ mod tests {
             .collect();
         soup.positions.push(Point3::new(9.0, 9.0, 9.0));
         let mut moved = soup.positions.clone();
-        assert!(gradients(&soup, &moved).iter().all(Option::is_none));
+        assert!(map_gradients(&soup, &moved).iter().all(Option::is_none));
         moved[0].x -= 1.0;
         moved[8].x -= 1.0;
-        let maps = gradients(&soup, &moved);
+        let maps = map_gradients(&soup, &moved);
         assert!(maps[0].is_some() && maps[3].is_none() && maps[8].is_some());
     }
 
@@ -231,7 +234,7 @@ mod tests {
         let mut moved = soup.positions.clone();
         moved[1].z = 1.0;
         moved[5].z = -2.0;
-        let maps = gradients(&soup, &moved);
+        let maps = map_gradients(&soup, &moved);
         assert_eq!((maps[0], maps[2]), (maps[3], maps[4]));
         assert_ne!(maps[1], maps[5]);
     }
@@ -250,7 +253,7 @@ mod tests {
             .iter()
             .flat_map(|f| [vec![f[0], f[1], f[2]], vec![f[0], f[2], f[3]]])
             .collect();
-        for map in gradients(&soup, &moved) {
+        for map in map_gradients(&soup, &moved) {
             let stretch = map.map_or(1.0, |m| (m * Vector3::y()).norm());
             assert!((0.99..2.5).contains(&stretch), "{stretch}");
         }
