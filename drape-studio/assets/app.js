@@ -3,7 +3,10 @@
 import { Cameras } from "./cameras.js";
 import { Chart } from "./chart.js";
 import { control } from "./commands.js";
+import { Legend } from "./heats.js";
+import { Hover } from "./hover.js";
 import { Link } from "./link.js";
+import { Memory } from "./memory.js";
 import { Painter } from "./painter.js";
 import { Panels } from "./panels.js";
 import { Parts } from "./parts.js";
@@ -30,13 +33,18 @@ class App {
     this.views = new Views(this);
     this.cameras = new Cameras(this);
     this.stage = new Stage(this);
+    this.memory = new Memory(this);
+    this.legend = new Legend(this);
+    this.hover = new Hover(this);
     this.parts = new Parts(this);
     this.panels = new Panels(this);
     this.words = new Words(this);
     this.chart = new Chart($("chart"));
     this.dress();
     control(this);
-    new ResizeObserver(() => this.resized()).observe(document.querySelector("main"));
+    const observer = new ResizeObserver(() => this.resized());
+    [document.querySelector("main"), ...this.views.list.map((view) => view.element)].forEach((element) => observer.observe(element));
+    this.stage.remember(this.memory.before);
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.dress());
     this.link = new Link({
       told: (message) => this.hear(message),
@@ -61,8 +69,13 @@ class App {
   }
 
   resized() {
+    this.views.measure();
     this.chart.draw();
     this.painter.invalidate();
+  }
+
+  get landmarks() {
+    return this.state?.landmarks ?? [];
   }
 
   // The shape that the result's view was last sent.
@@ -100,8 +113,10 @@ class App {
     this.panels.show(state);
     this.parts.show(state);
     this.panels.showProgress(this.progress, state);
+    this.panels.showFigures(this.figures, state);
     if (!state.landmarks.some((l) => l.id === this.chosen)) this.chosen = null;
     this.words.advise();
+    this.legend.show();
     this.painter.moved();
   }
 
@@ -114,9 +129,10 @@ class App {
 
   setFigures(figures) {
     this.figures = figures;
-    this.panels.showFigures(figures);
+    if (this.state) this.panels.showFigures(figures, this.state);
     if (!figures) return;
     this.chart.add("Q", figures.iteration, figures.q);
+    this.chart.add("mean distance", figures.iteration, figures.mean_distance);
     this.chart.draw();
   }
 
@@ -172,7 +188,7 @@ class App {
   }
 
   get chosenLandmark() {
-    return this.state?.landmarks.find((l) => l.id === this.chosen);
+    return this.landmarks.find((l) => l.id === this.chosen);
   }
 
   // Where a point of a view is on the page: for tests.

@@ -23,6 +23,16 @@ export class Camera {
     Object.assign(this, HOME, { centre: [...HOME.centre] });
   }
 
+  // All that tells how it looks, to come back to.
+  get pose() {
+    const { yaw, pitch, distance, centre, up, base } = this;
+    return { yaw, pitch, distance, centre, up, base };
+  }
+
+  set pose(pose) {
+    Object.assign(this, pose);
+  }
+
   setUp(axis) {
     this.up = axis;
     this.base = UPS[axis];

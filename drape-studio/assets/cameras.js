@@ -37,8 +37,8 @@ export class Cameras {
     if (!view.shape) return;
     const { target } = this.app.views;
     const { shape } = view.name === "result" && target.shape ? target : view;
-    const { clientWidth, clientHeight } = view.element;
-    view.camera.fit(shape.bounds.centre, shape.sample(3000), clientWidth / clientHeight);
+    const { width, height } = view.box;
+    view.camera.fit(shape.bounds.centre, shape.sample(3000), width / height);
   }
 
   frameAll() {

@@ -1,7 +1,8 @@
 // What buttons and keys of the page do, beside those of the panels.
 
 import { listen, showKeys } from "./keys.js";
-import { HEATS, STYLES } from "./painter.js";
+import { HEATS } from "./heats.js";
+import { STYLES } from "./painter.js";
 
 const $ = (id) => document.getElementById(id);
 const next = (list, item) => list[(list.indexOf(item) + 1) % list.length];

@@ -1,7 +1,8 @@
 // Everything beside the views: files, landmarks, settings, the drape and its figures.
 
 import { openFile } from "./link.js";
-import { markColour } from "./views.js";
+import { markColour } from "./colours.js";
+import { digitsOf, labelOf } from "./markers.js";
 
 const $ = (id) => document.getElementById(id);
 // Misses above this many hundredths of the longest side stand out.
@@ -15,6 +16,7 @@ export class Panels {
   constructor(app) {
     this.app = app;
     this.rows = new Map();
+    this.opening = Promise.resolve();
     const on = (id, event, action) => $(id).addEventListener(event, action);
     on("open-source", "click", () => this.chooseFile("source"));
     on("open-target", "click", () => this.chooseFile("target"));
@@ -41,14 +43,24 @@ export class Panels {
     input.click();
   }
 
-  async open(role, file) {
-    this.app.words.say(`Opening ${file.name} as ${role}…`);
+  // Files are opened one after the other, in the order in which they came.
+  open(role, file) {
+    this.opening = this.opening.then(() => this.openNow(typeof role === "function" ? role() : role, file));
+    return this.opening;
+  }
+
+  async openNow(role, file) {
+    const { words, views } = this.app;
+    const view = views.list.find(({ name }) => name === role);
+    words.say(`Opening ${file.name} as ${role}…`);
+    view?.wait(`Opening ${file.name}…`);
     try {
       await openFile(role, file);
-      this.app.words.say("");
+      words.say("");
     } catch (error) {
-      this.app.words.complain(error);
+      words.complain(error);
     }
+    if (view?.shape || !view) view?.wait("");
   }
 
   listenToDrops() {
@@ -75,7 +87,8 @@ export class Panels {
       this.app.words.complain(new Error("drop a source, a target and one file of landmarks at most"));
       return;
     }
-    const free = this.app.state?.source ? "target" : "source";
+    // What is free is known once the files that came before are open.
+    const free = () => (this.app.state?.source ? "target" : "source");
     const roles = shapes.length === 2 ? ["source", "target"] : [["source", "target"].includes(view) ? view : free];
     for (const [k, file] of shapes.entries()) await this.open(roles[k], file);
     for (const file of landmarks) await this.open("landmarks", file);
@@ -90,6 +103,8 @@ export class Panels {
     $("toml").value = this.app.state.settings.toml;
     $("toml-error").textContent = "";
     $("settings-dialog").showModal();
+    $("toml").setSelectionRange(0, 0);
+    $("toml").scrollTop = 0;
   }
 
   async applySettings() {
@@ -156,12 +171,13 @@ export class Panels {
     }
     landmarks.forEach((landmark, k) => {
       const row = this.rows.get(landmark.id) ?? this.addRow(landmark.id);
-      const label = landmark.name || `landmark ${k + 1}`;
-      row.number.textContent = k + 1;
+      const label = labelOf(landmark);
+      row.number.textContent = digitsOf(landmark);
       row.number.setAttribute("aria-label", `Choose ${label}`);
       if (document.activeElement !== row.name) row.name.value = landmark.name;
-      row.name.placeholder = !landmark.target ? "mark it on the target" : !landmark.source ? "mark it on the source" : `landmark ${k + 1}`;
-      row.name.setAttribute("aria-label", `Name of landmark ${k + 1}`);
+      row.name.placeholder = !landmark.target ? "mark it on the target" : !landmark.source ? "mark it on the source" : label;
+      row.name.title = landmark.name;
+      row.name.setAttribute("aria-label", `Name of ${label}`);
       row.kind.textContent = landmark.kind;
       row.kind.setAttribute("aria-label", `${label} is ${landmark.kind}; change`);
       row.kind.dataset.kind = landmark.kind;
@@ -215,25 +231,44 @@ export class Panels {
     $("status").classList.toggle("is-bad", Boolean(run.error));
   }
 
-  showFigures(f) {
-    const entries = f ? [
-      ["Q", f.q.toFixed(3), "Fit and distortion together: 1 is perfect"],
-      ["Hausdorff", `${(100 * f.hausdorff).toFixed(2)} %`, "Largest distance, both ways, of the target's longest side"],
-      ["mean distance", `${(100 * f.mean_distance).toFixed(3)} %`, "Mean distances of both ways, added"],
-      ["Dirichlet", f.dirichlet.toFixed(3), "Stretch: 1 is none"],
-      ["angles", `${f.angle_deviation.toFixed(1)}°`, "Mean change of the corner angles"],
-      ["folds", f.folds, "Edges folded over"],
-      ["skinny", f.skinny, "Triangles of quality below 0.1"],
-      ["landmarks", `${(100 * f.landmark_rms).toFixed(2)} %`, "Root mean square of what the landmarks are off"],
-    ] : [];
-    $("figures").replaceChildren(...entries.map(([name, value, title]) => {
+  // Those of other landmarks than the present ones are grey until the new ones come.
+  showFigures(f, { run, marks }) {
+    const isOld = Boolean(f) && f.marks !== marks && run.status !== "running";
+    $("figures").classList.toggle("is-old", isOld);
+    $("figures").title = isOld ? "Of the landmarks before; those of the present ones are on the way" : "";
+    const entries = f ? figuresOf(f) : [];
+    $("figures").replaceChildren(...entries.map(([name, value, title, kind = ""]) => {
       const item = document.createElement("div");
-      item.title = title;
+      [item.title, item.className] = [title, kind];
       item.append(Object.assign(document.createElement("dt"), { textContent: name }), Object.assign(document.createElement("dd"), { textContent: value }));
       return item;
     }));
   }
 }
+
+// What the footer says of a shape: name, value, what it means, and whether it is bad or for information only.
+const figuresOf = (f) => {
+  const percent = (x, digits) => `${(100 * x).toFixed(digits)} %`;
+  const isPartial = f.source_left_out + f.target_left_out > 0.005;
+  const over = isPartial ? ", over what has a counterpart" : "";
+  const bad = (n) => (n > 0 ? "is-bad" : "");
+  const entries = [
+    ["Q", f.q.toFixed(3), `Fit and distortion together: 1 is perfect${over}`],
+    ["Hausdorff", percent(f.hausdorff, 2), `Largest distance, both ways, of the target's longest side${over}`],
+    ["mean distance", percent(f.mean_distance, 3), `Mean distances of both ways, added${over}`],
+    ["Dirichlet", f.dirichlet.toFixed(3), "Stretch: 1 is none"],
+    ["angles", `${f.angle_deviation.toFixed(1)}°`, "Mean change of the corner angles"],
+    ["flipped", f.flipped ?? "unknown", "Triangles that face against the target", bad(f.flipped)],
+    ["crossing", f.crossings, "Pairs of triangles that pass through each other and did not at rest", bad(f.crossings)],
+    ["folds", f.folds, "Edges folded over", bad(f.folds)],
+    ["skinny", f.skinny, "Triangles of quality below 0.1"],
+    ["landmarks", percent(f.landmark_rms, 2), "Root mean square of what the landmarks are off"],
+  ];
+  if (!isPartial) return entries;
+  const shares = [["source", f.source_left_out], ["target", f.target_left_out]].filter(([, share]) => share > 0.005);
+  const about = shares.map(([shape, share]) => `${percent(share, 0)} of the ${shape}`).join(", ");
+  return [...entries, ["left out", about, `Has no counterpart and is not counted; with it, the Hausdorff distance is ${percent(f.hausdorff_of_all, 1)}`, "is-soft"]];
+};
 
 const sentence = (text) => text.charAt(0).toUpperCase() + text.slice(1) + (/[.!?]$/.test(text) ? "" : ".");
 

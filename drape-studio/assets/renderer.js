@@ -1,5 +1,7 @@
 // Draws shapes into parts of one canvas.
 
+import { RAMP } from "./heats.js";
+
 const VERTEX = `#version 300 es
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;
@@ -21,8 +23,9 @@ precision highp float;
 in vec3 vNormal, vPlace;
 in float vValue;
 uniform vec4 colour;
-uniform vec3 ramp[5];
+uniform vec3 ramp[6];
 uniform vec2 range;
+uniform bool isGrey; // What has no value is grey
 uniform int mode; // 0 shaded, 1 plain, 2 heat, 3 points
 out vec4 fragment;
 void main() {
@@ -37,10 +40,12 @@ void main() {
   bool away = dot(n, -vPlace) < 0.0;
   if (away) n = -n;
   vec3 base = colour.rgb;
-  if (mode == 2 && vValue > -0.5) {
-    float t = clamp((vValue - range.x) / (range.y - range.x), 0.0, 1.0) * 4.0;
-    int k = min(int(t), 3);
+  if (mode == 2 && vValue > -1e-6) {
+    float t = clamp((vValue - range.x) / (range.y - range.x), 0.0, 1.0) * 5.0;
+    int k = min(int(t), 4);
     base = mix(ramp[k], ramp[k + 1], t - float(k));
+  } else if (mode == 2 && isGrey) {
+    base = vec3(0.62);
   }
   if (away && mode == 0 && !gl_FrontFacing) base = mix(base, vec3(0.45, 0.36, 0.34), 0.55);
   vec3 key = normalize(vec3(0.35, 0.6, 0.8));
@@ -49,9 +54,6 @@ void main() {
   float shine = mode == 2 ? 0.0 : 0.10 * pow(max(dot(n, half_), 0.0), 32.0);
   fragment = vec4(base * light + shine, colour.a);
 }`;
-
-// From good to bad; the legend in style.css has the same.
-const RAMP = [[0.16, 0.25, 0.55], [0.13, 0.55, 0.62], [0.45, 0.74, 0.42], [0.96, 0.80, 0.30], [0.86, 0.24, 0.18]].flat();
 
 const compile = (gl) => {
   const program = gl.createProgram();
@@ -72,17 +74,18 @@ export class Renderer {
     this.gl = canvas.getContext("webgl2", { antialias: true, alpha: false, preserveDrawingBuffer: true, powerPreference: "high-performance" });
     if (!this.gl) throw new Error("this browser shows no WebGL 2");
     this.program = compile(this.gl);
-    const names = ["view", "both", "pointSize", "colour", "ramp", "range", "mode"];
+    const names = ["view", "both", "pointSize", "colour", "ramp", "range", "mode", "isGrey"];
     this.at = Object.fromEntries(names.map((name) => [name, this.gl.getUniformLocation(this.program, name)]));
   }
 
-  // Fits the canvas to its place on the page; whether everything has to be drawn again.
-  begin() {
+  // Fits the canvas to its size on the page; whether everything has to be drawn again.
+  begin(size) {
     const { gl, canvas } = this;
     const ratio = window.devicePixelRatio || 1;
-    const [width, height] = [Math.round(canvas.clientWidth * ratio), Math.round(canvas.clientHeight * ratio)];
+    const [width, height] = [Math.round(size.width * ratio), Math.round(size.height * ratio)];
     const isResized = canvas.width !== width || canvas.height !== height;
     if (isResized) [canvas.width, canvas.height] = [width, height];
+    this.ratio = ratio;
     gl.enable(gl.DEPTH_TEST);
     gl.depthFunc(gl.LEQUAL);
     gl.enable(gl.SCISSOR_TEST);
@@ -94,19 +97,31 @@ export class Renderer {
   // Draws into a part of the canvas from now on, in pixels of the page from the canvas's corner.
   aim(box, matrices) {
     const { gl, canvas } = this;
-    const ratio = canvas.width / Math.max(1, canvas.clientWidth);
-    const rect = [box.left, canvas.clientHeight - box.top - box.height, box.width, box.height].map((x) => Math.round(x * ratio));
+    const { ratio } = this;
+    // Neighbours share the pixel between them: edges are rounded, not widths.
+    const [left, right] = [box.left, box.left + box.width].map((x) => Math.round(x * ratio));
+    const [top, bottom] = [box.top, box.top + box.height].map((y) => Math.round(y * ratio));
+    const rect = [left, canvas.height - bottom, right - left, bottom - top];
     gl.viewport(...rect);
     gl.scissor(...rect);
     gl.uniformMatrix4fv(this.at.view, false, matrices.view);
     gl.uniformMatrix4fv(this.at.both, false, matrices.both);
-    this.ratio = ratio;
   }
 
   clear(background) {
     const { gl } = this;
     gl.clearColor(...background, 1);
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
+  }
+
+  // Closes the gaps between points, for what lies behind them: nothing is seen of this.
+  close(shape, pixels) {
+    const { gl, at } = this;
+    this.points(shape);
+    gl.uniform1f(at.pointSize, Math.max(2, Math.min(64, pixels * this.ratio)));
+    gl.colorMask(false, false, false, false);
+    gl.drawArrays(gl.POINTS, 0, shape.positions.length / 3);
+    gl.colorMask(true, true, true, true);
   }
 
   // Lets points be counted that are not hidden, changing nothing.
@@ -149,7 +164,7 @@ export class Renderer {
   }
 
   // style: shaded, wire (shaded with edges), points; `ink` is how strong the edges are.
-  draw(shape, { style, colour, line, ink = 0, alpha = 1, range = null }) {
+  draw(shape, { style, colour, line, ink = 0, alpha = 1, range = null, isGrey = false }) {
     const { gl } = this;
     if (alpha <= 0) return;
     const isBlended = alpha < 1;
@@ -159,7 +174,7 @@ export class Renderer {
     }
     this.colour(colour, alpha);
     if (shape.isCloud || style === "points") this.points(shape);
-    else this.surface(shape, isBlended, range);
+    else this.surface(shape, isBlended, range, isGrey);
     if (style === "wire" && !shape.isCloud && ink > 0) this.lines(shape, line, ink);
     gl.disable(gl.BLEND);
   }
@@ -174,11 +189,11 @@ export class Renderer {
     gl.drawArrays(gl.POINTS, 0, shape.positions.length / 3);
   }
 
-  surface(shape, isBlended, range) {
+  surface(shape, isBlended, range, isGrey) {
     const { gl } = this;
     const isHeat = shape.values && range;
     const isSpread = isHeat && shape.perTriangle;
-    if (isHeat) this.heat(shape, range);
+    if (isHeat) this.heat(shape, range, isGrey);
     else this.plain(shape);
     gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, shape.buffers.triangles);
     gl.enable(gl.POLYGON_OFFSET_FILL);
@@ -202,14 +217,15 @@ export class Renderer {
     this.gl.uniform1i(this.at.mode, 0);
   }
 
-  // Values between two ends as colours; those below −0.5 have none.
-  heat(shape, range) {
+  // Values between two ends as colours; those below 0 have none.
+  heat(shape, range, isGrey = false) {
     const { perTriangle, buffers } = shape;
     if (perTriangle) shape.spread();
     this.attribute(0, perTriangle ? buffers.spread : buffers.positions, 3);
     this.attribute(1, perTriangle ? buffers.spreadNormals : buffers.normals, 3);
     this.attribute(2, buffers.values, 1);
     this.gl.uniform2f(this.at.range, ...range);
+    this.gl.uniform1i(this.at.isGrey, isGrey);
     this.gl.uniform1i(this.at.mode, 2);
   }
 

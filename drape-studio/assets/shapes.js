@@ -27,20 +27,45 @@ const meanLength = (positions, edges) => {
   return sum / Math.max(1, n);
 };
 
+// About how far apart the points of a cloud are: as if they lay evenly over the surface of their box.
+const meanSpacing = (positions) => {
+  const [low, high] = extent(positions);
+  const [x, y, z] = low.map((l, c) => high[c] - l);
+  return Math.sqrt((2 * (x * y + y * z + z * x)) / Math.max(1, positions.length / 3));
+};
+
+// The lowest and the highest coordinates.
+const extent = (positions) => {
+  const [low, high] = [[Infinity, Infinity, Infinity], [-Infinity, -Infinity, -Infinity]];
+  for (let k = 0; k < positions.length; k++) {
+    low[k % 3] = Math.min(low[k % 3], positions[k]);
+    high[k % 3] = Math.max(high[k % 3], positions[k]);
+  }
+  return [low, high];
+};
+
+const BUFFERS = ["positions", "normals", "values", "triangles", "edges", "spread", "spreadNormals"];
+
 export class Shape {
   constructor(gl, { positions, triangles, edges, normals }) {
-    this.gl = gl;
     this.isCloud = triangles.length === 0;
-    [this.triangles, this.edges] = [triangles, edges];
+    [this.triangles, this.edges, this.positions] = [triangles, edges, positions];
     this.values = null;
     this.perTriangle = false;
-    this.buffers = Object.fromEntries(["positions", "normals", "values", "triangles", "edges", "spread", "spreadNormals"].map((name) => [name, gl.createBuffer()]));
-    this.index("triangles", triangles);
-    this.index("edges", edges);
     this.givenNormals = normals;
-    this.meanEdge = meanLength(positions, edges);
+    this.meanEdge = this.isCloud ? meanSpacing(positions) : meanLength(positions, edges);
     this.normals = normals ?? new Float32Array(positions.length);
-    this.move(positions);
+    this.upload(gl);
+  }
+
+  // Brings everything to a graphics card, which may be another or have lost what it had.
+  upload(gl) {
+    this.gl = gl;
+    this.buffers = Object.fromEntries(BUFFERS.map((name) => [name, gl.createBuffer()]));
+    this.index("triangles", this.triangles);
+    this.index("edges", this.edges);
+    this.move(this.positions);
+    this.colour(this.values, this.perTriangle);
   }
 
   index(name, rows) {
@@ -90,6 +115,24 @@ export class Shape {
     this.isSpread = true;
   }
 
+  // The value at a place; none where there are no values.
+  valueAt({ vertices, weights }) {
+    if (!this.values) return null;
+    if (this.perTriangle) return this.values[this.triangleOf(vertices)] ?? null;
+    const parts = vertices.map((v, k) => this.values[v] * weights[k]);
+    return vertices.some((v) => this.values[v] < 0) ? -1 : parts.reduce((sum, x) => sum + x, 0);
+  }
+
+  // The row of the triangle with some corners; the list is made when it is first needed.
+  triangleOf(corners) {
+    const key = (three) => [...three].sort((a, b) => a - b).join(" ");
+    if (!this.rowOf) {
+      const rows = this.triangles.length / 3;
+      this.rowOf = new Map(Array.from({ length: rows }, (_, k) => [key(this.triangles.subarray(3 * k, 3 * k + 3)), k]));
+    }
+    return this.rowOf.get(key(corners));
+  }
+
   point(v) {
     return [this.positions[3 * v], this.positions[3 * v + 1], this.positions[3 * v + 2]];
   }
@@ -108,11 +151,7 @@ export class Shape {
 
   // The middle of the box and the distance of its corners.
   get bounds() {
-    const [low, high] = [[Infinity, Infinity, Infinity], [-Infinity, -Infinity, -Infinity]];
-    for (let k = 0; k < this.positions.length; k++) {
-      low[k % 3] = Math.min(low[k % 3], this.positions[k]);
-      high[k % 3] = Math.max(high[k % 3], this.positions[k]);
-    }
+    const [low, high] = extent(this.positions);
     const centre = low.map((x, c) => (x + high[c]) / 2);
     return { centre, radius: Math.hypot(...low.map((x, c) => (high[c] - x) / 2)) };
   }

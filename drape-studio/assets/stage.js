@@ -1,8 +1,8 @@
 // The shapes in the views: loaded, moved, coloured.
 
+import { HEATS } from "./heats.js";
 import { fetchShape } from "./link.js";
 import { length, subtract } from "./maths.js";
-import { HEATS } from "./painter.js";
 import { Shape } from "./shapes.js";
 
 const $ = (id) => document.getElementById(id);
@@ -29,14 +29,17 @@ export class Stage {
     this.hashes[name] = hash;
     [name, "result"].forEach((dropped) => this.drop(app.views.of(dropped)));
     app.setFigures(null);
+    const view = app.views.of(name);
+    view.wait(hash ? "Loading…" : "");
     if (!hash) return;
     try {
       const buffers = await fetchShape(name, hash);
       if (this.hashes[name] !== hash) return;
-      const view = app.views.of(name);
       view.shape = new Shape(app.painter.renderer.gl, buffers);
-      view.camera.home();
-      app.cameras.frame(view);
+      if (!app.memory.look(view)) {
+        view.camera.home();
+        app.cameras.frame(view);
+      }
       if (name === "source") app.parts.colour();
       this.takeShown();
       app.words.nameViews();
@@ -45,6 +48,7 @@ export class Stage {
       this.hashes[name] = undefined;
       app.words.complain(error);
     }
+    if (this.hashes[name] === hash) view.wait("");
   }
 
   drop(view) {
@@ -95,12 +99,24 @@ export class Stage {
     } else {
       const { triangles, edges } = source.shape;
       result.shape = new Shape(app.painter.renderer.gl, { positions: shown.positions, triangles, edges, normals: null });
-      result.camera.look(target.camera.yaw, target.camera.pitch);
-      app.cameras.frame(result);
-      const isMarked = app.state.landmarks.filter((l) => l.source && l.target).length >= ENOUGH_TO_ALIGN;
-      if (isMarked) app.cameras.align();
+      if (!app.memory.look(result)) this.lookAtResult();
     }
     this.askHeat();
+  }
+
+  lookAtResult() {
+    const { app } = this;
+    const { target, result } = app.views;
+    result.camera.look(target.camera.yaw, target.camera.pitch);
+    app.cameras.frame(result);
+    const isMarked = app.landmarks.filter((l) => l.source && l.target).length >= ENOUGH_TO_ALIGN;
+    if (isMarked) app.cameras.align();
+  }
+
+  // The colours and the overlay of the page before it was loaded again.
+  remember({ heat = "", overlay = 0 }) {
+    if (overlay > 0) $("opacity").value = overlay;
+    if (heat in HEATS) this.setHeat(heat);
   }
 
   askHeat() {
@@ -113,9 +129,8 @@ export class Stage {
     const { views, painter } = this.app;
     [this.heat, this.heatSerial, this.isHeatAsked] = [heat, null, false];
     $("heat").value = heat;
-    $("legend").hidden = !heat;
-    if (heat) [, , $("legend-low").textContent, $("legend-high").textContent] = HEATS[heat];
-    else views.result.shape?.colour(null, false);
+    this.app.legend.show();
+    if (!heat) views.result.shape?.colour(null, false);
     this.askHeat();
     painter.invalidate();
   }

@@ -1,7 +1,8 @@
 //! Source and target as the studio holds them: what is draped, with what the page shows and picks on.
 
+use std::collections::BTreeSet;
 use std::path::Path;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use anyhow::Result;
 use mesh_core::io::NamedFaces;
@@ -11,6 +12,7 @@ use mesh_core::{
 };
 use mesh_draping::landmarks::{source_symmetry, target_symmetry};
 use mesh_draping::{Source, Target};
+use mesh_metrics::self_intersections;
 
 use crate::buffers::DisplayBuffers;
 use crate::pick::{self, Ray};
@@ -26,6 +28,8 @@ pub(crate) struct DisplayedPair {
     pub(crate) target: Arc<DisplayedTarget>,
     /// What is draped.
     pub(crate) shapes: Shapes,
+    /// Pairs of triangles of the source that pass through each other at rest; found once asked for.
+    rest_crossings: Arc<OnceLock<BTreeSet<[usize; 2]>>>,
 }
 
 /// A mesh to deform.
@@ -61,7 +65,19 @@ impl DisplayedPair {
             shapes: Shapes::new(source.source.clone(), target.target.clone()),
             source,
             target,
+            rest_crossings: Arc::default(),
         }
+    }
+
+    /// How many pairs of triangles pass through each other at `x` and do not at rest.
+    pub(crate) fn new_crossings(&self, x: &Positions) -> usize {
+        let source = &self.shapes.source;
+        let found = |x: &Positions| self_intersections(source.triangulation(), x);
+        let at_rest = self
+            .rest_crossings
+            .get_or_init(|| found(source.rest()).into_iter().collect());
+        let now = found(x).into_iter();
+        now.filter(|pair| !at_rest.contains(pair)).count()
     }
 }
 

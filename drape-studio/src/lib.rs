@@ -10,12 +10,14 @@
 //! newest of each and pass over older ones (`broadcast`). What is done to a drape is logged with the iteration
 //! (`logged_run`), so that [`replay`] comes to the same bits.
 
+mod address;
 mod broadcast;
 mod buffers;
 mod checkpoint;
 mod controller;
 mod displayed;
 mod figures;
+mod heat;
 mod latest;
 mod logged_run;
 mod pick;

@@ -252,6 +252,7 @@ impl Run<'_> {
         let provenance = Provenance {
             log: drape.log().clone(),
             network: drape.network(),
+            counterparts: Arc::new(drape.counterparts()),
         };
         let is_wanted = lock(self.is_wanted);
         if *is_wanted {
@@ -265,6 +266,7 @@ impl Run<'_> {
         self.parts.figures.ask(FiguresJob {
             displayed: self.parts.displayed.clone(),
             positions: Arc::new(self.drape.positions()),
+            counterparts: Arc::new(self.drape.counterparts()),
             landmarks: landmarks(log.last_landmarks()),
             iteration: Some(log.iteration),
             is_resting,

@@ -284,7 +284,6 @@ impl Controller {
             displayed,
             method: self.preset.initial,
             landmarks: self.landmarks(),
-            numbers: self.numbers(),
             shown,
             newest: Arc::clone(&self.newest_preview),
             figures: Arc::clone(&self.figures),
@@ -303,6 +302,7 @@ impl Controller {
             self.figures.ask(FiguresJob {
                 displayed,
                 positions: Arc::clone(&shown.positions),
+                counterparts: shown.counterparts(),
                 landmarks: self.landmarks(),
                 iteration: Some(shown.iteration()),
                 is_resting: true,
@@ -312,13 +312,6 @@ impl Controller {
 
     fn landmarks(&self) -> Vec<Landmark> {
         crate::session::landmarks(&self.session.document.marks)
-    }
-
-    /// The numbers that the markers of these landmarks have: all are counted, also those that are half made.
-    fn numbers(&self) -> Vec<usize> {
-        let marks = self.session.document.marks.iter().zip(1..);
-        let complete = marks.filter(|(mark, _)| mark.landmark().is_some());
-        complete.map(|(_, number)| number).collect()
     }
 
     fn snapshot(&self) -> Snapshot {

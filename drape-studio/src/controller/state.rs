@@ -4,13 +4,15 @@ use mesh_draping::Preset;
 use serde_json::{json, Value};
 
 use super::Controller;
-use crate::session::{Mark, MarkKind};
+use crate::session::{fingerprint, numbers, Mark, MarkKind};
 
 impl Controller {
     /// Inputs, landmarks, settings, the drape: everything but shapes and figures.
     pub(super) fn state(&self) -> Value {
         let (document, situation) = (&self.session.document, self.situation());
-        let marks: Vec<Value> = document.marks.iter().map(|m| self.mark(m)).collect();
+        let numbers = numbers(&document.marks);
+        let marks = document.marks.iter().zip(numbers);
+        let marks: Vec<Value> = marks.map(|(m, number)| self.mark(m, number)).collect();
         json!({
             "type": "state",
             "revision": self.revision,
@@ -18,6 +20,7 @@ impl Controller {
             "source": self.source_state(),
             "target": self.target_state(),
             "landmarks": marks,
+            "marks": fingerprint(&self.landmarks()),
             "warnings": self.warnings,
             "preview_error": self.preview_error,
             "notice": self.notice,
@@ -61,13 +64,15 @@ impl Controller {
             "n_vertices": target.buffers.n_vertices,
             "n_faces": target.buffers.n_faces,
             "kind": if target.target.is_cloud() { "cloud" } else { "mesh" },
+            // Lengths of the page are in longest sides of the box: this many units of the file.
+            "side": target.frame.scale,
             "hash": self.session.target.as_ref().map(|r| &r.fnv1a),
             "symmetry": target.symmetry,
         })
     }
 
     /// A landmark; its place on the target with the normal there, in the frame of the target.
-    fn mark(&self, mark: &Mark) -> Value {
+    fn mark(&self, mark: &Mark, number: Option<usize>) -> Value {
         let place = self.target.as_ref().zip(mark.target).map(|(target, point)| {
             let point = point.into();
             let location = target.judged().closest_point(&point).location;
@@ -77,6 +82,7 @@ impl Controller {
         });
         json!({
             "id": mark.id,
+            "number": number,
             "name": mark.name,
             "source": mark.source,
             "target": place,

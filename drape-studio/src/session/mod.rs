@@ -6,7 +6,7 @@ mod mark;
 
 pub(crate) use file::{read, InputRecord};
 pub(crate) use log::{Change, Event, RunLog};
-pub(crate) use mark::{landmarks, Mark, MarkKind, SourcePlace};
+pub(crate) use mark::{fingerprint, landmarks, numbers, Mark, MarkKind, SourcePlace};
 
 use serde::{Deserialize, Serialize};
 
