@@ -76,7 +76,7 @@ export class Painter {
       else if (view.isUnprobed) this.probe(view, landmarks);
       [view.isStale, view.isUnprobed] = [false, false];
       if (view.probes.collect()) this.refresh();
-      view.showMarkers(landmarks, app.chosen);
+      view.markers.show(landmarks, app.chosen);
     }
     app.panels.showMisses(app.stage.misses(landmarks), app.chosen);
   }
