@@ -64,7 +64,7 @@ fn tell(broadcast: &Broadcast, job: &FiguresJob) {
 
 /// What pages show of a shape. Distances are in longest sides of the target's box, over what has a counterpart.
 #[derive(Serialize)]
-struct Figures {
+pub(crate) struct Figures {
     q: f64,
     hausdorff: f64,
     /// The same over everything.
@@ -86,7 +86,8 @@ struct Figures {
 }
 
 impl Figures {
-    fn of(job: &FiguresJob) -> Self {
+    /// Judges a shape.
+    pub(crate) fn of(job: &FiguresJob) -> Self {
         let (source, target) = (&job.displayed.shapes.source, job.displayed.target.judged());
         let (t, rest, x) = (
             source.triangulation(),

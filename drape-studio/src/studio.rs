@@ -81,9 +81,8 @@ impl Studio {
             session_path: options.session.clone(),
             notice,
         })?;
-        let uploads = options.session.with_extension("files");
         Ok(Self {
-            app: App::new(controller, broadcast, uploads),
+            app: App::new(controller, broadcast, &options.session),
             listener,
             guard,
             url,

@@ -7,7 +7,7 @@ use serde_json::Value;
 
 use super::can::Action;
 use super::{Controller, Edit};
-use crate::session::{Mark, MAX_MARKS};
+use crate::session::{Mark, NamedSettings, MAX_MARKS};
 
 /// Longest name of a landmark, in characters.
 const MAX_NAME: usize = 80;
@@ -51,6 +51,15 @@ impl Controller {
                 preset.drape.seed = u64::from(seed);
                 self.set_preset(&preset);
             }
+            Edit::SaveSettings { name } => self.save_settings(&name)?,
+            Edit::ForgetSettings { name } => {
+                self.session.edit(|d| d.saved.retain(|s| s.name != name));
+            }
+            Edit::Dismiss { result } => {
+                let is_kept = self.session.kept.iter().any(|kept| kept.id == result);
+                ensure!(is_kept, "there is no kept result {result}");
+                self.session.edit(|d| d.dismissed.push(result));
+            }
             Edit::Settings { toml } => self.set_preset(&Preset::from_toml(&toml)?),
             Edit::Undo => {
                 self.situation().check(Action::Undo)?;
@@ -78,8 +87,31 @@ impl Controller {
         self.changed();
     }
 
-    /// A preset, with the seed as it is.
+    /// Keeps the settings as they are under a name.
+    fn save_settings(&mut self, name: &str) -> Result<()> {
+        let name: String = name.trim().chars().take(MAX_NAME).collect();
+        ensure!(!name.is_empty(), "settings are saved under a name");
+        let is_preset = Preset::names().any(|known| known == name);
+        ensure!(
+            !is_preset,
+            "{name} is a preset of the program; choose another name"
+        );
+        self.session.edit(|d| {
+            d.saved.retain(|saved| saved.name != name);
+            let toml = d.settings.clone();
+            d.saved.push(NamedSettings { name, toml });
+        });
+        Ok(())
+    }
+
+    /// Settings that were saved, or a preset, with the seed as it is.
     fn choose_preset(&mut self, name: &str) -> Result<()> {
+        let mut saved = self.session.document.saved.iter();
+        if let Some(saved) = saved.find(|saved| saved.name == name) {
+            let toml = saved.toml.clone();
+            self.session.edit(|d| d.settings = toml);
+            return Ok(());
+        }
         let mut preset = Preset::named(name)?;
         preset.drape.seed = self.preset.drape.seed;
         self.set_preset(&preset);

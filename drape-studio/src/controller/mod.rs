@@ -3,16 +3,19 @@
 mod can;
 mod commands;
 mod edits;
+mod history;
 mod parts;
 mod places;
 mod queries;
 mod request;
+mod scans;
 mod state;
 
 pub(crate) use can::OPEN_FIRST;
 use can::{Situation, Status};
 pub(crate) use request::Request;
 use request::{Command, Edit, Query, Shape};
+pub(crate) use scans::OpenedSession;
 
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -30,6 +33,7 @@ use crate::broadcast::{Broadcast, Provenance, ShownKind, ShownShape};
 use crate::checkpoint;
 use crate::displayed::{DisplayedPair, DisplayedSource, DisplayedTarget};
 use crate::figures::{judge, FiguresJob};
+use crate::kept_files::KeptFiles;
 use crate::latest::Latest;
 use crate::preview::{live_preview, preview, PreviewJob, PreviewOf};
 use crate::runner::{Runner, Update};
@@ -50,6 +54,8 @@ pub(crate) enum Inbox {
     Previewed(u32, Result<Vec<String>, String>),
     /// The inner surfaces of these are known.
     LookedInside(Shapes),
+    /// A kept result is drawn and judged.
+    Examined(u32, Value),
 }
 
 /// A file that was opened.
@@ -57,6 +63,11 @@ pub(crate) enum Opened {
     Source(Arc<DisplayedSource>, InputRecord),
     Target(Arc<DisplayedTarget>, InputRecord),
     Landmarks(Vec<Landmark>),
+    /// A file that a mesh names: there is nothing to show of it alone.
+    Beside,
+    /// A target for later.
+    Queued(InputRecord),
+    Session(Box<OpenedSession>),
 }
 
 /// Everything that an export needs.
@@ -109,6 +120,8 @@ pub(crate) struct Controller {
     inbox: Sender<Inbox>,
     session: Session,
     session_path: PathBuf,
+    /// Where kept results and other sessions are.
+    files: KeptFiles,
     source: Option<Arc<DisplayedSource>>,
     target: Option<Arc<DisplayedTarget>>,
     /// The two, where both are open.
@@ -149,6 +162,7 @@ impl Controller {
             inbox: inbox.clone(),
             broadcast: parts.broadcast,
             session: parts.session,
+            files: KeptFiles::beside(&parts.session_path),
             session_path: parts.session_path,
             displayed: both(parts.source.as_ref(), parts.target.as_ref()),
             source: parts.source,
@@ -217,6 +231,7 @@ impl Controller {
             }
             Inbox::Previewed(..) => {}
             Inbox::LookedInside(shapes) => self.looked_inside(&shapes),
+            Inbox::Examined(id, figures) => self.examined(id, figures),
         }
     }
 
@@ -225,6 +240,7 @@ impl Controller {
         match request {
             Request::Query(query) => Ok(self.look_up(&query)),
             Request::Edit(edit) => self.make(edit),
+            Request::Kept(kept) => self.handle_kept(kept),
             Request::Command(command) => self.drive(command).map(|()| Value::Null),
         }
     }
@@ -332,37 +348,6 @@ impl Controller {
             displayed: self.displayed.clone(),
             shown: shown.or(preview),
         }
-    }
-
-    fn open(&mut self, opened: Opened) -> anyhow::Result<()> {
-        match opened {
-            Opened::Source(source, record) => {
-                self.leave_run();
-                self.session.forget_places();
-                self.source = Some(source);
-                self.session.source = Some(record);
-            }
-            Opened::Target(target, record) => {
-                self.leave_run();
-                self.session.forget_places();
-                self.target = Some(target);
-                self.session.target = Some(record);
-            }
-            Opened::Landmarks(landmarks) => {
-                self.adopt(&landmarks)?;
-                return Ok(());
-            }
-        }
-        self.dragged_from = None;
-        self.shown_bvh = None;
-        self.warnings.clear();
-        self.notice = None;
-        self.displayed = both(self.source.as_ref(), self.target.as_ref());
-        self.broadcast.set_displayed(self.displayed.clone());
-        self.look_inside();
-        self.ask_preview();
-        self.changed();
-        Ok(())
     }
 
     fn checkpoint_path(&self) -> PathBuf {

@@ -24,6 +24,17 @@ pub(crate) enum Request {
     Query(Query),
     Edit(Edit),
     Command(Command),
+    Kept(KeptRequest),
+}
+
+/// What is done with results that are kept.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(tag = "do", rename_all = "snake_case", deny_unknown_fields)]
+pub(crate) enum KeptRequest {
+    /// Keeps what the drape came to.
+    Keep,
+    /// Goes back to a kept result; the present one is kept.
+    BringBack { result: u32 },
 }
 
 /// What is asked without changing anything.
@@ -84,6 +95,18 @@ pub(crate) enum Edit {
     },
     Settings {
         toml: String,
+    },
+    /// Keeps the settings under a name, in the place of those that had it.
+    SaveSettings {
+        name: String,
+    },
+    /// Forgets settings that were saved under a name.
+    ForgetSettings {
+        name: String,
+    },
+    /// Takes a kept result out of the list.
+    Dismiss {
+        result: u32,
     },
     Undo,
     Redo,

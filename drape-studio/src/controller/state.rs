@@ -33,11 +33,22 @@ impl Controller {
                 "n_iterations": self.preset.drape.stages.iter().map(|s| s.n_iterations).sum::<usize>(),
                 "toml": document.settings,
             },
+            "kept": self.kept_state(),
+            "scans": self.scans_state(),
+            "saved": self.saved_state(),
             "presets": Preset::names().collect::<Vec<_>>(),
             "can": situation.can(),
             "discards": situation.discarding(),
             "run": self.run_state(),
         })
+    }
+
+    /// The names of the saved settings, and the one whose settings hold.
+    fn saved_state(&self) -> Value {
+        let document = &self.session.document;
+        let names: Vec<&String> = document.saved.iter().map(|s| &s.name).collect();
+        let present = document.saved.iter().find(|s| s.toml == document.settings);
+        json!({ "names": names, "present": present.map(|s| &s.name) })
     }
 
     fn source_state(&self) -> Value {
@@ -50,6 +61,7 @@ impl Controller {
             "n_faces": source.buffers.n_faces,
             "kind": "mesh",
             "hash": self.session.source.as_ref().map(|r| &r.fnv1a),
+            "looks": source.looks.state(),
             "symmetry": source.symmetry,
             "parts": source.parts().iter().map(|part| &part.name).collect::<Vec<_>>(),
         })
@@ -67,6 +79,7 @@ impl Controller {
             // Lengths of the page are in longest sides of the box: this many units of the file.
             "side": target.frame.scale,
             "hash": self.session.target.as_ref().map(|r| &r.fnv1a),
+            "looks": target.looks.state(),
             "symmetry": target.symmetry,
         })
     }
@@ -107,7 +120,7 @@ impl Controller {
     }
 }
 
-fn file_name(path: &std::path::Path) -> String {
+pub(super) fn file_name(path: &std::path::Path) -> String {
     path.file_name()
         .unwrap_or(path.as_os_str())
         .to_string_lossy()

@@ -9,12 +9,11 @@ use axum::response::{IntoResponse, Response};
 use mesh_draping::landmarks::{write, Form};
 use mesh_draping::{initial_deformation, Outcome, Preset};
 use mesh_render::{Gallery, Page, View};
-use tokio::sync::oneshot;
 use tokio::task::spawn_blocking;
 
-use super::App;
+use super::{snapshot, App};
 use crate::broadcast::ShownShape;
-use crate::controller::{Inbox, Snapshot, OPEN_FIRST};
+use crate::controller::{Snapshot, OPEN_FIRST};
 use crate::replay::Replayed;
 use crate::session::{landmarks, RunLog, Session};
 use crate::shapes::Shapes;
@@ -31,9 +30,7 @@ struct Download {
 
 /// The result, the warp, the landmarks, the report or the session.
 pub(super) async fn export(State(app): State<Arc<App>>, Path(what): Path<String>) -> Response {
-    let (sender, answer) = oneshot::channel();
-    app.controller.send(Inbox::Snapshot(sender));
-    let Ok(snapshot) = answer.await else {
+    let Some(snapshot) = snapshot(&app).await else {
         return StatusCode::SERVICE_UNAVAILABLE.into_response();
     };
     let made = spawn_blocking(move || make(&what, snapshot)).await;

@@ -110,7 +110,9 @@ fn without_options(mut rest: &str) -> &str {
 fn beside(folder: &Path, name: &str) -> Option<PathBuf> {
     let name = name.trim().trim_matches('"').replace('\\', "/");
     let path = Path::new(&name);
-    let is_below = path.components().all(|c| matches!(c, Component::Normal(_) | Component::CurDir));
+    let is_below = path
+        .components()
+        .all(|c| matches!(c, Component::Normal(_) | Component::CurDir));
     let inner = folder.join(path);
     if is_below && inner.is_file() {
         return Some(inner);
@@ -129,7 +131,10 @@ mod tests {
         let mut pictures = HashMap::new();
         let text = "newmtl skin\nKd 1 1 1\nmap_Kd -bm 0.5 -clamp on my skin.png\nnewmtl eye\n map_kd eye.jpg \nnewmtl no";
         read_library(text, &mut pictures);
-        assert_eq!(pictures.get("skin").map(String::as_str), Some("my skin.png"));
+        assert_eq!(
+            pictures.get("skin").map(String::as_str),
+            Some("my skin.png")
+        );
         assert_eq!(pictures.get("eye").map(String::as_str), Some("eye.jpg"));
         assert_eq!(pictures.get("no"), None);
     }
@@ -146,7 +151,8 @@ mod tests {
             "newmtl a\nmap_Kd C:\\work\\skin.png\nnewmtl b\nmap_Kd ../secret.png\n",
         )
         .unwrap();
-        let text = "mtllib a.mtl\nv 0 0 0 1 0 0\nv 1 0 0 0 1 0\nv 0 1 0 0 0 1\nvt 0 0\nvt 1 0\nvt 0.5 1\n\
+        let text =
+            "mtllib a.mtl\nv 0 0 0 1 0 0\nv 1 0 0 0 1 0\nv 0 1 0 0 0 1\nvt 0 0\nvt 1 0\nvt 0.5 1\n\
                     usemtl a\nf 1/1 2/2 3/3\nusemtl b\nf 1/1 3 2/2\n";
         std::fs::write(place.join("a.obj"), text).unwrap();
         let looks = read_mesh(place.join("a.obj")).unwrap().looks();

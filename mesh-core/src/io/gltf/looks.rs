@@ -18,7 +18,9 @@ impl GltfFile {
         let mut out = vec![[1.0; 3]; n_vertices];
         let mut any = false;
         for block in &self.blocks {
-            let Some(colors) = &block.colors else { continue };
+            let Some(colors) = &block.colors else {
+                continue;
+            };
             for row in block.rows.clone() {
                 let linear = colors.get::<3>(&self.container, row - block.rows.start);
                 out[row] = linear.map(|c| to_screen(c) as f32);
@@ -36,13 +38,18 @@ impl GltfFile {
         let mut picture_of = HashMap::new();
         for (row, material) in root.objects("materials", None)?.iter().enumerate() {
             let shading = material.object("pbrMetallicRoughness")?;
-            let Some(base) = shading.map(|s| s.object("baseColorTexture")).transpose()?.flatten()
+            let Some(base) = shading
+                .map(|s| s.object("baseColorTexture"))
+                .transpose()?
+                .flatten()
             else {
                 continue;
             };
             let texture = base.count("index")?.and_then(|k| textures.get(k));
             let image = texture.map(|t| t.count("source")).transpose()?.flatten();
-            let Some(image) = image.and_then(|k| images.get(k)) else { continue };
+            let Some(image) = image.and_then(|k| images.get(k)) else {
+                continue;
+            };
             let name = material.text("name")?;
             let name = name.unwrap_or_else(|| format!("material {row}"));
             let at = match (image.text("uri")?, image.count("bufferView")?) {
@@ -55,7 +62,10 @@ impl GltfFile {
             }
         }
         let shown = materials.iter().filter_map(|material| {
-            Some((material.faces.clone(), picture_of.get(&material.name)?.clone()))
+            Some((
+                material.faces.clone(),
+                picture_of.get(&material.name)?.clone(),
+            ))
         });
         Ok(shown.collect())
     }
