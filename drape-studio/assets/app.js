@@ -4,12 +4,14 @@ import { Cameras } from "./cameras.js";
 import { Chart } from "./chart.js";
 import { control } from "./commands.js";
 import { Legend } from "./heats.js";
+import { Files, showScans } from "./files.js";
 import { Hover } from "./hover.js";
 import { Link } from "./link.js";
 import { Memory } from "./memory.js";
 import { Painter } from "./painter.js";
 import { Panels } from "./panels.js";
 import { Parts } from "./parts.js";
+import { Strip } from "./strip.js";
 import { Stage } from "./stage.js";
 import { Views } from "./views.js";
 import { Words } from "./words.js";
@@ -27,7 +29,7 @@ const stored = () => {
 
 class App {
   constructor() {
-    this.preferences = { style: "wire", theme: null, linked: true, ...stored() };
+    this.preferences = { style: "wire", look: "scan", theme: null, linked: true, ...stored() };
     [this.state, this.progress, this.figures, this.chosen, this.dragging] = [null, null, null, null, null];
     this.painter = new Painter(this, $("canvas"));
     this.views = new Views(this);
@@ -37,7 +39,9 @@ class App {
     this.legend = new Legend(this);
     this.hover = new Hover(this);
     this.parts = new Parts(this);
+    this.files = new Files(this);
     this.panels = new Panels(this);
+    this.strip = new Strip(this);
     this.words = new Words(this);
     this.chart = new Chart($("chart"));
     this.dress();
@@ -112,9 +116,11 @@ class App {
     this.words.nameViews();
     this.panels.show(state);
     this.parts.show(state);
+    this.strip.show(state);
+    showScans(this, state.scans);
     this.panels.showProgress(this.progress, state);
     this.panels.showFigures(this.figures, state);
-    if (!state.landmarks.some((l) => l.id === this.chosen)) this.chosen = null;
+    this.chooseNext();
     this.words.advise();
     this.legend.show();
     this.painter.moved();
@@ -165,8 +171,31 @@ class App {
 
   async place(view, ray) {
     if (!this.state) return;
-    const answer = await this.edit("place", { shape: view.name, ray });
-    this.choose(answer ? answer.landmark : null);
+    try {
+      const answer = await this.link.ask("edit", { do: "place", shape: view.name, ray });
+      if (!answer) this.words.note("The click missed: nothing is there");
+      this.choose(answer ? answer.landmark : null);
+      this.chooseNext();
+    } catch (error) {
+      this.words.complain(error);
+    }
+  }
+
+  // Of landmarks that wait for their places on another scan, the first is chosen, so that it is seen which one is meant.
+  chooseNext() {
+    const waiting = this.landmarks.filter((l) => !l.source || !l.target);
+    if (!this.chosenLandmark) this.chosen = null;
+    if (waiting.length > 1) this.choose(waiting[0].id);
+  }
+
+  // Gives up the pair that is half made; else nothing is chosen any more.
+  escape() {
+    const waiting = this.landmarks.filter((l) => !l.source || !l.target);
+    if (waiting.length === 1) {
+      this.edit("delete", { landmark: waiting[0].id });
+      this.words.note("The half pair is gone; undo brings it back");
+    }
+    this.choose(null);
   }
 
   // Rays of a drag go one after the other; those that come meanwhile are passed over, but the last.

@@ -72,6 +72,21 @@ export class Cameras {
     this.app.painter.invalidate();
   }
 
+  // With or without perspective, in all views.
+  setFlat(isFlat) {
+    this.app.views.list.forEach(({ camera }) => (camera.isFlat = isFlat));
+    this.app.painter.invalidate();
+  }
+
+  // One view in the place of all, or all again.
+  enlarge(view) {
+    const main = document.querySelector("main");
+    const isLarge = view.element.classList.contains("is-large");
+    this.app.views.list.forEach((other) => other.element.classList.toggle("is-large", other === view && !isLarge));
+    main.classList.toggle("is-single", !isLarge);
+    this.app.resized();
+  }
+
   toggleUp() {
     const { views, painter } = this.app;
     const next = this.focused.camera.up === "y" ? "z" : "y";

@@ -4,6 +4,8 @@ import { Renderer } from "./renderer.js";
 
 const $ = (id) => document.getElementById(id);
 export const STYLES = ["shaded", "wire", "points"];
+// As it was scanned, with wrinkles brought out, or plain.
+export const LOOKS = ["scan", "matcap", "clay"];
 const COLOURS = {
   light: { back: [0.89, 0.905, 0.92], source: [0.93, 0.80, 0.58], target: [0.62, 0.70, 0.78], result: [0.93, 0.80, 0.58], line: [0.1, 0.12, 0.15] },
   dark: { back: [0.125, 0.145, 0.165], source: [0.88, 0.73, 0.50], target: [0.48, 0.57, 0.66], result: [0.88, 0.73, 0.50], line: [0.02, 0.03, 0.04] },
@@ -34,6 +36,7 @@ export class Painter {
   restore() {
     this.renderer = new Renderer(this.canvas);
     this.app.views.list.forEach((view) => view.restore(this.renderer));
+    this.app.strip.shape?.upload(this.renderer.gl);
     this.invalidate();
   }
 
@@ -72,6 +75,7 @@ export class Painter {
     const isResized = renderer.begin(app.views.size);
     const { landmarks } = app;
     for (const view of app.views.list) {
+      if (view.box.width <= 1) continue;
       if (view.isStale || isResized) this.drawView(view, landmarks);
       else if (view.isUnprobed) this.probe(view, landmarks);
       [view.isStale, view.isUnprobed] = [false, false];
@@ -88,19 +92,25 @@ export class Painter {
 
   drawView(view, landmarks) {
     const { app, renderer } = this;
-    const { style } = app.preferences;
+    const { style, look } = app.preferences;
     const colours = COLOURS[app.theme];
     this.aim(view);
     renderer.clear(colours.back);
     if (!view.shape) return;
     const isResult = view.name === "result";
     const range = isResult ? app.legend.range : [0, 1];
-    renderer.draw(view.shape, { style, colour: colours[view.name], line: colours.line, ink: ink(view), range, isGrey: isResult });
+    const how = { style, look, colour: colours[view.name], line: colours.line, ink: ink(view) };
+    renderer.draw(view.shape, { ...how, range, isGrey: isResult });
     this.probe(view, landmarks);
     const ranges = view.name === "source" ? app.parts.pointedRanges : [];
     if (ranges.length > 0 && view.shape.values) renderer.through(view.shape, ranges, range);
     if (isResult && this.overlay > 0 && app.views.target.shape) {
       renderer.draw(app.views.target.shape, { style: "shaded", colour: colours.target, alpha: this.overlay });
+    }
+    if (isResult && app.strip.share > 0) {
+      renderer.cut(app.strip.share);
+      renderer.clear(colours.back);
+      renderer.draw(app.strip.shape, how);
     }
   }
 

@@ -6,15 +6,21 @@ const VERTEX = `#version 300 es
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;
 layout(location = 2) in float value;
+layout(location = 3) in vec3 painted;
+layout(location = 4) in vec2 uv;
 uniform mat4 view, both;
 uniform float pointSize;
 out vec3 vNormal, vPlace;
 out float vValue;
+out vec3 vPainted;
+out vec2 vUv;
 void main() {
   gl_Position = both * vec4(position, 1.0);
   vPlace = (view * vec4(position, 1.0)).xyz;
   vNormal = mat3(view) * normal;
   vValue = value;
+  vPainted = painted;
+  vUv = uv;
   gl_PointSize = pointSize;
 }`;
 
@@ -22,6 +28,11 @@ const FRAGMENT = `#version 300 es
 precision highp float;
 in vec3 vNormal, vPlace;
 in float vValue;
+in vec3 vPainted;
+in vec2 vUv;
+uniform sampler2D picture;
+uniform int paint; // 0 none, 1 colours of vertices, 2 a picture
+uniform bool isMatcap;
 uniform vec4 colour;
 uniform vec3 ramp[6];
 uniform vec2 range;
@@ -48,10 +59,22 @@ void main() {
     base = vec3(0.62);
   }
   if (away && mode == 0 && !gl_FrontFacing) base = mix(base, vec3(0.45, 0.36, 0.34), 0.55);
+  bool isPainted = paint > 0 && mode != 2;
+  if (isPainted) base = paint == 1 ? vPainted : texture(picture, vUv).rgb;
+  if (isMatcap && mode == 0) {
+    // The curvature of the surface, in one over the longest side: what is hollow is darker, what bulges brighter.
+    float reach = max(1e-6, 0.5 * (length(dFdx(vPlace)) + length(dFdy(vPlace))));
+    float bulge = (dFdx(n.x) + dFdy(n.y)) / reach;
+    float tone = 0.22 + 0.62 * smoothstep(-0.5, 1.0, 0.45 * n.x + 0.75 * n.y + 0.5 * n.z) + 0.25 * pow(1.0 - abs(n.z), 3.0);
+    fragment = vec4(mix(vec3(0.72), base, 0.35) * clamp(tone * (1.0 + clamp(0.006 * bulge, -0.45, 0.35)), 0.0, 1.4), colour.a);
+    return;
+  }
   vec3 key = normalize(vec3(0.35, 0.6, 0.8));
   float light = 0.34 + 0.52 * max(dot(n, key), 0.0) + 0.16 * (0.5 + 0.5 * n.y);
+  // What was scanned has the light of its room in it.
+  if (isPainted) light = mix(light, 1.0, 0.65);
   vec3 half_ = normalize(key + normalize(-vPlace));
-  float shine = mode == 2 ? 0.0 : 0.10 * pow(max(dot(n, half_), 0.0), 32.0);
+  float shine = mode == 2 || isPainted ? 0.0 : 0.10 * pow(max(dot(n, half_), 0.0), 32.0);
   fragment = vec4(base * light + shine, colour.a);
 }`;
 
@@ -74,7 +97,7 @@ export class Renderer {
     this.gl = canvas.getContext("webgl2", { antialias: true, alpha: false, preserveDrawingBuffer: true, powerPreference: "high-performance" });
     if (!this.gl) throw new Error("this browser shows no WebGL 2");
     this.program = compile(this.gl);
-    const names = ["view", "both", "pointSize", "colour", "ramp", "range", "mode", "isGrey"];
+    const names = ["view", "both", "pointSize", "colour", "ramp", "range", "mode", "isGrey", "picture", "paint", "isMatcap"];
     this.at = Object.fromEntries(names.map((name) => [name, this.gl.getUniformLocation(this.program, name)]));
   }
 
@@ -91,6 +114,7 @@ export class Renderer {
     gl.enable(gl.SCISSOR_TEST);
     gl.useProgram(this.program);
     gl.uniform3fv(this.at.ramp, RAMP);
+    gl.uniform1i(this.at.picture, 0);
     return isResized;
   }
 
@@ -159,12 +183,25 @@ export class Renderer {
     gl.vertexAttribPointer(location, size, gl.FLOAT, false, 0, 0);
   }
 
+  // What a shape is painted with: 0 nothing, 1 the colours of its vertices, 2 a picture.
+  brush(kind, paint) {
+    const { gl, at } = this;
+    this.attribute(3, null);
+    this.attribute(4, kind === 2 ? paint.buffers.uvs : null, 2);
+    if (kind === 1) {
+      gl.bindBuffer(gl.ARRAY_BUFFER, paint.buffers.colors);
+      gl.enableVertexAttribArray(3);
+      gl.vertexAttribPointer(3, 4, gl.UNSIGNED_BYTE, true, 0, 0);
+    }
+    gl.uniform1i(at.paint, kind);
+  }
+
   colour([r, g, b], alpha) {
     this.gl.uniform4f(this.at.colour, r, g, b, alpha);
   }
 
   // style: shaded, wire (shaded with edges), points; `ink` is how strong the edges are.
-  draw(shape, { style, colour, line, ink = 0, alpha = 1, range = null, isGrey = false }) {
+  draw(shape, { style, look = "clay", colour, line, ink = 0, alpha = 1, range = null, isGrey = false }) {
     const { gl } = this;
     if (alpha <= 0) return;
     const isBlended = alpha < 1;
@@ -173,14 +210,19 @@ export class Renderer {
       gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
     }
     this.colour(colour, alpha);
-    if (shape.isCloud || style === "points") this.points(shape);
-    else this.surface(shape, isBlended, range, isGrey);
+    gl.uniform1i(this.at.isMatcap, look === "matcap");
+    const paint = look === "scan" && !isBlended ? shape.paint : null;
+    if (shape.isCloud || style === "points") this.points(shape, paint);
+    else if (paint?.uvs && !(shape.values && range)) this.pictured(shape, paint);
+    else this.surface(shape, { isBlended, range, isGrey, paint });
+    this.brush(0);
     if (style === "wire" && !shape.isCloud && ink > 0) this.lines(shape, line, ink);
     gl.disable(gl.BLEND);
   }
 
-  points(shape) {
+  points(shape, paint = null) {
     const { gl, at } = this;
+    this.brush(paint?.colors ? 1 : 0, paint);
     this.attribute(0, shape.buffers.positions, 3);
     this.attribute(1, shape.buffers.normals, 3);
     this.attribute(2, null);
@@ -189,8 +231,37 @@ export class Renderer {
     gl.drawArrays(gl.POINTS, 0, shape.positions.length / 3);
   }
 
-  surface(shape, isBlended, range, isGrey) {
+  // Triangles with pictures, and those without one.
+  pictured(shape, paint) {
     const { gl } = this;
+    shape.spread();
+    this.attribute(0, shape.buffers.spread, 3);
+    this.attribute(1, shape.buffers.spreadNormals, 3);
+    this.attribute(2, null);
+    gl.uniform1i(this.at.mode, 0);
+    gl.enable(gl.POLYGON_OFFSET_FILL);
+    gl.polygonOffset(1, 1);
+    const all = (ranges) => ranges.forEach(([from, to]) => gl.drawArrays(gl.TRIANGLES, 3 * from, 3 * (to - from)));
+    this.brush(0);
+    all(paint.bare);
+    this.brush(2, paint);
+    for (const { ranges, texture } of paint.pictures) {
+      gl.bindTexture(gl.TEXTURE_2D, texture);
+      all(ranges);
+    }
+    gl.disable(gl.POLYGON_OFFSET_FILL);
+  }
+
+  // Draws into the left share of a view from now on, over what is there.
+  cut(share) {
+    const { gl } = this;
+    const [x, y, width, height] = gl.getParameter(gl.SCISSOR_BOX);
+    gl.scissor(x, y, Math.round(width * share), height);
+  }
+
+  surface(shape, { isBlended, range, isGrey, paint }) {
+    const { gl } = this;
+    this.brush(paint?.colors && !(shape.values && range) ? 1 : 0, paint);
     const isHeat = shape.values && range;
     const isSpread = isHeat && shape.perTriangle;
     if (isHeat) this.heat(shape, range, isGrey);

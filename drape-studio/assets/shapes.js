@@ -52,6 +52,7 @@ export class Shape {
     [this.triangles, this.edges, this.positions] = [triangles, edges, positions];
     this.values = null;
     this.perTriangle = false;
+    this.paint = null;
     this.givenNormals = normals;
     this.meanEdge = this.isCloud ? meanSpacing(positions) : meanLength(positions, edges);
     this.normals = normals ?? new Float32Array(positions.length);
@@ -92,26 +93,26 @@ export class Shape {
 
   // Values to colour by: one per vertex, or one per triangle; none for the plain colour.
   colour(values, perTriangle) {
-    [this.values, this.perTriangle, this.isSpread] = [values, perTriangle, false];
-    if (values && !perTriangle) this.fill("values", values);
+    [this.values, this.perTriangle] = [values, perTriangle];
+    if (!values) return;
+    const { length } = this.triangles;
+    this.fill("values", perTriangle ? Float32Array.from({ length }, (_, k) => values[Math.floor(k / 3)]) : values);
   }
 
-  // Where every triangle has a colour of its own, it has corners of its own.
+  // Where every triangle has a colour or a place on a picture of its own, it has corners of its own.
   spread() {
     if (this.isSpread) return;
     const n = this.triangles.length;
-    const [p, m, v] = [new Float32Array(3 * n), new Float32Array(3 * n), new Float32Array(n)];
+    const [p, m] = [new Float32Array(3 * n), new Float32Array(3 * n)];
     for (let k = 0; k < n; k++) {
       const from = 3 * this.triangles[k];
       for (let c = 0; c < 3; c++) {
         p[3 * k + c] = this.positions[from + c];
         m[3 * k + c] = this.normals[from + c];
       }
-      v[k] = this.values[Math.floor(k / 3)];
     }
     this.fill("spread", p);
     this.fill("spreadNormals", m);
-    this.fill("values", v);
     this.isSpread = true;
   }
 

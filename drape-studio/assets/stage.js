@@ -2,6 +2,7 @@
 
 import { HEATS } from "./heats.js";
 import { fetchShape } from "./link.js";
+import { Paint, fetchPaint } from "./paint.js";
 import { length, subtract } from "./maths.js";
 import { Shape } from "./shapes.js";
 
@@ -36,6 +37,9 @@ export class Stage {
       const buffers = await fetchShape(name, hash);
       if (this.hashes[name] !== hash) return;
       view.shape = new Shape(app.painter.renderer.gl, buffers);
+      const paint = await fetchPaint(name, hash, about.looks);
+      if (this.hashes[name] !== hash) return;
+      if (paint) view.shape.paint = new Paint(app.painter.renderer.gl, paint, buffers.triangles.length / 3);
       if (!app.memory.look(view)) {
         view.camera.home();
         app.cameras.frame(view);
@@ -52,6 +56,8 @@ export class Stage {
   }
 
   drop(view) {
+    if (view.name !== "result") view.shape?.paint?.free();
+    else this.app.strip?.compare(null);
     view.shape?.free();
     view.shape = null;
     this.app.painter.invalidate(view);
@@ -99,6 +105,7 @@ export class Stage {
     } else {
       const { triangles, edges } = source.shape;
       result.shape = new Shape(app.painter.renderer.gl, { positions: shown.positions, triangles, edges, normals: null });
+      result.shape.paint = source.shape.paint;
       if (!app.memory.look(result)) this.lookAtResult();
     }
     this.askHeat();
@@ -120,9 +127,16 @@ export class Stage {
   }
 
   askHeat() {
+    if (this.heat === "difference") return void this.showDifference();
     if (!this.heat || this.isHeatAsked || this.heatSerial === this.shown?.serial) return;
     this.isHeatAsked = true;
     this.app.link.tell({ heat: this.heat });
+  }
+
+  // The map of differences needs no studio: the page has both shapes.
+  showDifference() {
+    const { shape } = this.app.views.result;
+    shape?.colour(this.app.strip.differences(shape.positions), false);
   }
 
   setHeat(heat) {
@@ -130,7 +144,7 @@ export class Stage {
     [this.heat, this.heatSerial, this.isHeatAsked] = [heat, null, false];
     $("heat").value = heat;
     this.app.legend.show();
-    if (!heat) views.result.shape?.colour(null, false);
+    views.result.shape?.colour(null, false);
     this.askHeat();
     painter.invalidate();
   }

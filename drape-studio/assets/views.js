@@ -11,10 +11,12 @@ class View {
   constructor(app, name) {
     Object.assign(this, { app, name, camera: new Camera(), shape: null, isStale: true, isUnprobed: false });
     this.element = document.getElementById(`view-${name}`);
-    this.element.innerHTML = '<div class="name"><b></b><span></span></div><div class="badge" hidden></div><div class="empty" hidden></div><div class="markers"></div><div class="busy" role="status"></div>';
+    this.element.innerHTML = '<div class="name"><b></b><span></span></div><div class="badge" hidden></div><div class="empty" hidden></div><div class="markers"></div><div class="busy" role="status"></div><button class="large">⤢</button>';
     [this.title, this.about] = this.element.querySelectorAll(".name b, .name span");
     this.badge = this.element.querySelector(".badge");
     this.empty = this.element.querySelector(".empty");
+    this.large = this.element.querySelector(".large");
+    [this.large.title, this.large.ariaLabel] = ["One view large, or all (X)", `The ${name} large, or all views`];
     this.busy = this.element.querySelector(".busy");
     this.markers = new Markers(this, this.element.querySelector(".markers"));
     this.probes = new Probes(app.painter.renderer);
@@ -63,7 +65,7 @@ class View {
   }
 
   press(event) {
-    if (event.target.closest(".empty") || !this.shape) return;
+    if (event.target.closest(".empty, .large") || !this.shape) return;
     const marker = event.target.closest(".marker");
     this.element.focus({ preventScroll: true });
     event.preventDefault();
@@ -126,7 +128,9 @@ class View {
     const { width, height } = this.box;
     if (event.ctrlKey || isWheel) {
       const speed = event.deltaMode === 1 ? 0.05 : event.ctrlKey ? 0.01 : 0.0015;
-      this.app.cameras.move(this, (camera) => camera.zoom(Math.exp(event.deltaY * speed)));
+      const { left, top } = this.element.getBoundingClientRect();
+      const at = [(2 * (event.clientX - left)) / width - 1, 1 - (2 * (event.clientY - top)) / height];
+      this.app.cameras.move(this, (camera, view) => camera.zoomAt(Math.exp(event.deltaY * speed), at, view.box.width / view.box.height));
     } else if (event.shiftKey) {
       this.app.cameras.move(this, (camera) => camera.pan(-event.deltaX, -event.deltaY, width, height));
     } else {
@@ -150,6 +154,8 @@ class View {
   // Another graphics card, or the same one without what it had.
   restore(renderer) {
     this.shape?.upload(renderer.gl);
+    // The result has the paint of the source.
+    if (this.name !== "result") this.shape?.paint?.upload(renderer.gl);
     this.probes = new Probes(renderer);
   }
 }
