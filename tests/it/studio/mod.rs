@@ -2,9 +2,13 @@
 
 mod big;
 mod browser;
+mod budget;
+mod defects;
 mod discard;
 mod going_on;
+mod history;
 mod inputs;
+mod looks;
 mod page;
 mod pictures;
 mod restart;
