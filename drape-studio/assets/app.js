@@ -1,5 +1,6 @@
 // The studio's page: what the server tells is shown, what the user does is asked of it.
 
+import { Brush } from "./brush.js";
 import { Cameras } from "./cameras.js";
 import { Chart } from "./chart.js";
 import { control } from "./commands.js";
@@ -42,6 +43,7 @@ class App {
     this.files = new Files(this);
     this.panels = new Panels(this);
     this.strip = new Strip(this);
+    this.brush = new Brush(this);
     this.words = new Words(this);
     this.chart = new Chart($("chart"));
     this.dress();
@@ -117,6 +119,7 @@ class App {
     this.panels.show(state);
     this.parts.show(state);
     this.strip.show(state);
+    this.brush.show(state);
     showScans(this, state.scans);
     this.panels.showProgress(this.progress, state);
     this.panels.showFigures(this.figures, state);

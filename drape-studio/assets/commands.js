@@ -89,7 +89,7 @@ export const control = (app) => {
     m: () => $("mirror").click(), escape: () => app.escape(), k: press("keep"),
     home: () => cameras.home(), f: () => cameras.frameChosen(), l: () => $("linked").click(), a: () => cameras.align(), u: () => cameras.toggleUp(),
     ...Object.fromEntries(Object.entries({ 1: "front", 2: "back", 3: "right", 4: "left", 7: "top", 8: "bottom" }).map(([key, side]) => [key, () => cameras.look(...SIDES[side])])),
-    5: () => setFlat(app, !app.preferences.flat), x: () => cameras.enlarge(cameras.focused),
+    5: () => setFlat(app, !app.preferences.flat), b: press("brush"), x: () => cameras.enlarge(cameras.focused),
     arrowleft: camera((c) => c.orbit(12, 0)), arrowright: camera((c) => c.orbit(-12, 0)),
     arrowup: camera((c) => c.orbit(0, 12)), arrowdown: camera((c) => c.orbit(0, -12)),
     "+": camera((c) => c.zoom(0.8)), "=": camera((c) => c.zoom(0.8)), "-": camera((c) => c.zoom(1.25)),

@@ -99,6 +99,8 @@ export class Panels {
       link.tabIndex = can.export ? 0 : -1;
     }
     this.showPresets(state);
+    const isPainted = Boolean(state.parts.weights) && !state.parts.weights.startsWith("property:");
+    $("export-weights").parentElement.hidden = !isPainted;
     if (document.activeElement !== $("seed")) $("seed").value = settings.seed;
     $("mirror").checked = Boolean(state.mirror);
     const axes = state.mirror ?? [state.source?.symmetry ?? 0, state.target?.symmetry ?? 0];

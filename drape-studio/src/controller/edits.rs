@@ -15,7 +15,7 @@ const MAX_NAME: usize = 80;
 impl Controller {
     /// Makes an edit; the number of the landmark where a place is marked.
     pub(super) fn make(&mut self, edit: Edit) -> Result<Value> {
-        if !matches!(edit, Edit::Drag { .. }) {
+        if !matches!(edit, Edit::Drag { .. } | Edit::Paint(_)) {
             self.finish_drag();
         }
         match edit {
@@ -35,6 +35,8 @@ impl Controller {
                 self.change_mark(landmark, |m| m.name = name)?;
             }
             Edit::Kind { landmark, kind } => self.change_mark(landmark, |m| m.kind = kind)?,
+            Edit::Paint(dab) => return self.paint(&dab),
+            Edit::ClearWeights => self.session.edit(|d| d.parts.weights = None),
             Edit::Clear => {
                 self.situation().check(Action::Clear)?;
                 self.session.edit(|d| d.marks.clear());

@@ -4,6 +4,7 @@ mod can;
 mod commands;
 mod edits;
 mod history;
+mod paint;
 mod parts;
 mod places;
 mod queries;
@@ -140,6 +141,8 @@ pub(crate) struct Controller {
     notice: Option<String>,
     /// The document before the drag that goes on.
     dragged_from: Option<Document>,
+    /// The stroke of the brush that goes on.
+    stroke: Option<paint::Stroke>,
     /// The shape shown under this number, to pick on.
     shown_bvh: Option<(u32, TriangleBvh)>,
     revision: u64,
@@ -176,6 +179,7 @@ impl Controller {
             preview_error: None,
             notice: parts.notice,
             dragged_from: None,
+            stroke: None,
             shown_bvh: None,
             revision: 0,
             unsaved_since: Some(Instant::now()),

@@ -178,8 +178,10 @@ impl Controller {
         Ok(())
     }
 
-    /// What was dragged becomes one edit.
+    /// What was dragged or painted becomes one edit.
     pub(super) fn finish_drag(&mut self) {
+        // Whoever painted has been told by then why a stroke cannot be; it is forgotten.
+        drop(self.finish_stroke());
         if let Some(before) = self.dragged_from.take() {
             if before != self.session.document {
                 self.session.remember(before);

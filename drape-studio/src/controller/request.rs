@@ -47,6 +47,31 @@ pub(crate) enum Query {
     PartTriangles { name: String },
     /// The curves of the drape so far.
     Curves,
+    /// The weights of attraction, one per vertex.
+    Weights,
+}
+
+/// One touch of the brush.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Dab {
+    /// Where it is painted: on the source, or on the source as it is shown now.
+    pub(crate) shape: Shape,
+    pub(crate) ray: Option<Ray>,
+    /// In longest sides of the source's box.
+    pub(crate) radius: f64,
+    /// What the weights go to, and how far with this dab; 0..=1.
+    pub(crate) weight: f64,
+    pub(crate) strength: f64,
+    pub(crate) done: bool,
+}
+
+impl Dab {
+    /// Whether its numbers are such as a brush has.
+    pub(crate) fn is_sound(&self) -> bool {
+        let is_share = |x: f64| (0.0..=1.0).contains(&x);
+        self.radius > 0.0 && self.radius <= 1.0 && is_share(self.weight) && is_share(self.strength)
+    }
 }
 
 /// A change of landmarks, parts or settings.
@@ -76,6 +101,10 @@ pub(crate) enum Edit {
         landmark: u32,
         kind: MarkKind,
     },
+    /// Paints weights of attraction on the source; one edit from the first dab to the one that is `done`.
+    Paint(Dab),
+    /// Forgets the weights.
+    ClearWeights,
     /// Deletes all landmarks.
     Clear,
     /// Axes of source and target across which landmarks are placed twice.

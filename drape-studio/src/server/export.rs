@@ -28,7 +28,7 @@ struct Download {
     bytes: Vec<u8>,
 }
 
-/// The result, the warp, the landmarks, the report or the session.
+/// The result, the warp, the landmarks, the weights, the report or the session.
 pub(super) async fn export(State(app): State<Arc<App>>, Path(what): Path<String>) -> Response {
     let Some(snapshot) = snapshot(&app).await else {
         return StatusCode::SERVICE_UNAVAILABLE.into_response();
@@ -86,6 +86,7 @@ fn make(what: &str, snapshot: Snapshot) -> Result<Download> {
             "application/json",
             work.landmarks().into_bytes(),
         )),
+        "weights" => work.weights(),
         "result" => work.result(),
         "warp" => Ok(download(
             "result.drape",
@@ -128,6 +129,17 @@ impl Work {
         let (source, target) = (&self.shapes.source, &self.shapes.target);
         let complete = landmarks(&self.session.document.marks);
         write(&complete, source, target, Form::Json).text
+    }
+
+    /// The weights that were painted, for `drape --weights`.
+    fn weights(&self) -> Result<Download> {
+        let path = self.session.document.parts.weights.as_ref();
+        let path = path.filter(|path| !path.starts_with("property:"));
+        Ok(Download {
+            name: "weights.txt".to_owned(),
+            kind: "text/plain; charset=utf-8",
+            bytes: std::fs::read(path.context("no weights were painted")?)?,
+        })
     }
 
     /// The shape that is shown and how it came about.

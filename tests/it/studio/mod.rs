@@ -10,6 +10,7 @@ mod history;
 mod inputs;
 mod looks;
 mod page;
+mod painting;
 mod pictures;
 mod restart;
 mod safety;
