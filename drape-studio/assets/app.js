@@ -5,6 +5,7 @@ import { Cameras } from "./cameras.js";
 import { Chart } from "./chart.js";
 import { control } from "./commands.js";
 import { Legend } from "./heats.js";
+import { Cursor } from "./cursor.js";
 import { Files, showScans } from "./files.js";
 import { Hover } from "./hover.js";
 import { Link } from "./link.js";
@@ -44,6 +45,7 @@ class App {
     this.panels = new Panels(this);
     this.strip = new Strip(this);
     this.brush = new Brush(this);
+    this.cursor = new Cursor(this);
     this.words = new Words(this);
     this.chart = new Chart($("chart"));
     this.dress();
@@ -193,6 +195,7 @@ class App {
 
   // Gives up the pair that is half made; else nothing is chosen any more.
   escape() {
+    if (this.cursor.isShown) return void this.cursor.hide();
     const waiting = this.landmarks.filter((l) => !l.source || !l.target);
     if (waiting.length === 1) {
       this.edit("delete", { landmark: waiting[0].id });

@@ -74,6 +74,12 @@ const controlButtons = (app) => {
   });
 };
 
+// Arrows move the cursor of the keyboard where it is shown, else they turn.
+const arrows = (app) => Object.fromEntries(Object.entries({ arrowleft: [-1, 0], arrowright: [1, 0], arrowup: [0, -1], arrowdown: [0, 1] }).flatMap(([key, [dx, dy]]) => {
+  const act = (isFine) => () => app.cursor.takes([dx, dy], isFine) || app.cameras.change((c) => c.orbit(-12 * dx, -12 * dy));
+  return [[key, act(false)], [`shift ${key}`, act(true)]];
+}));
+
 export const control = (app) => {
   controlButtons(app);
   showKeys($("keys"));
@@ -90,12 +96,12 @@ export const control = (app) => {
     home: () => cameras.home(), f: () => cameras.frameChosen(), l: () => $("linked").click(), a: () => cameras.align(), u: () => cameras.toggleUp(),
     ...Object.fromEntries(Object.entries({ 1: "front", 2: "back", 3: "right", 4: "left", 7: "top", 8: "bottom" }).map(([key, side]) => [key, () => cameras.look(...SIDES[side])])),
     5: () => setFlat(app, !app.preferences.flat), b: press("brush"), x: () => cameras.enlarge(cameras.focused),
-    arrowleft: camera((c) => c.orbit(12, 0)), arrowright: camera((c) => c.orbit(-12, 0)),
-    arrowup: camera((c) => c.orbit(0, 12)), arrowdown: camera((c) => c.orbit(0, -12)),
+    enter: () => app.cursor.enter(),
+    ...arrows(app),
     "+": camera((c) => c.zoom(0.8)), "=": camera((c) => c.zoom(0.8)), "-": camera((c) => c.zoom(1.25)),
     v: () => setLook(app, next(LOOKS, app.preferences.look)),
     z: () => setStyle(app, next(STYLES, app.preferences.style)),
-    h: () => stage.setHeat(next(["", ...Object.keys(HEATS)], stage.heat)),
+    h: () => stage.setHeat(next(["", ...Object.keys(HEATS).filter((name) => name !== "difference" || app.strip.shape)], stage.heat)),
     o: () => toggleOverlay(app), t: () => setTheme(app), "?": help,
   });
 };

@@ -26,7 +26,7 @@ export class Memory {
       view.name,
       view.shape ? { hash: this.hash(view), pose: view.camera.pose } : (this.before.cameras?.[view.name] ?? null),
     ]));
-    const kept = { cameras, heat: stage.heat, overlay: painter.overlay };
+    const kept = { cameras, heat: stage.heat === "difference" ? "" : stage.heat, overlay: painter.overlay };
     sessionStorage.setItem(KEY, JSON.stringify(kept));
   }
 

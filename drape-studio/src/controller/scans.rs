@@ -95,8 +95,10 @@ impl Controller {
         session.queue = std::mem::take(&mut self.session.queue);
         self.session = session;
         (self.source, self.target) = (Some(source), Some(target));
-        if let Some(run) = run {
-            mesh_core::io::write_atomic(self.checkpoint_path(), &run)?;
+        match run {
+            Some(run) => mesh_core::io::write_atomic(self.checkpoint_path(), &run)?,
+            // Without its own drape it is done again; one of another session would be taken for it.
+            None => drop(std::fs::remove_file(self.checkpoint_path())),
         }
         Ok(())
     }

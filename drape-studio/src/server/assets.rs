@@ -10,7 +10,7 @@ const SCRIPT: &str = "text/javascript; charset=utf-8";
 const SVG: &str = "image/svg+xml";
 
 /// Name, type and text of every file.
-const FILES: [(&str, &str, &str); 29] = [
+const FILES: [(&str, &str, &str); 30] = [
     ("index.html", HTML, include_str!("../../assets/index.html")),
     ("style.css", CSS, include_str!("../../assets/style.css")),
     ("icon.svg", SVG, include_str!("../../assets/icon.svg")),
@@ -47,6 +47,7 @@ const FILES: [(&str, &str, &str); 29] = [
         include_str!("../../assets/colours.js"),
     ),
     ("brush.js", SCRIPT, include_str!("../../assets/brush.js")),
+    ("cursor.js", SCRIPT, include_str!("../../assets/cursor.js")),
     ("files.js", SCRIPT, include_str!("../../assets/files.js")),
     ("paint.js", SCRIPT, include_str!("../../assets/paint.js")),
     ("strip.js", SCRIPT, include_str!("../../assets/strip.js")),

@@ -1,5 +1,6 @@
 //! The studio, used in a browser.
 
+mod access;
 mod big;
 mod browser;
 mod budget;

@@ -53,9 +53,8 @@ fn painted_weights_are_those_of_the_command_line() {
     // Mirrored strokes paint both sides.
     wire.ask(json!({ "edit": { "do": "mirror", "axes": [0, 0] } }));
     let one = wire.ask(dab(-0.3, true))["value"].as_array().map(Vec::len);
+    wire.ask(json!({ "edit": { "do": "undo" } }));
     wire.ask(json!({ "edit": { "do": "mirror", "axes": null } }));
-    wire.ask(json!({ "edit": { "do": "undo" } }));
-    wire.ask(json!({ "edit": { "do": "undo" } }));
     let other = wire.ask(dab(-0.3, true))["value"].as_array().map(Vec::len);
     assert!(one > other, "{one:?} {other:?}");
     wire.ask(json!({ "edit": { "do": "undo" } }));
