@@ -15,7 +15,7 @@ const setStyle = (app, style) => {
 
 const setLook = (app, look) => {
   app.prefer({ look });
-  document.querySelector(`input[name=look][value=${look}]`).checked = true;
+  $("look").value = look;
 };
 
 // Yaw and pitch.
@@ -64,10 +64,8 @@ const controlButtons = (app) => {
   setFlat(app, Boolean(app.preferences.flat));
   document.querySelectorAll("[data-look]").forEach((button) => button.addEventListener("click", () => cameras.look(...SIDES[button.dataset.look])));
   app.views.list.forEach((view) => view.large.addEventListener("click", () => cameras.enlarge(view)));
-  document.querySelectorAll("input[name=look]").forEach((input) => {
-    input.checked = input.value === app.preferences.look;
-    input.addEventListener("change", () => setLook(app, input.value));
-  });
+  $("look").value = app.preferences.look;
+  on("look", "change", () => setLook(app, $("look").value));
   document.querySelectorAll("input[name=style]").forEach((input) => {
     input.checked = input.value === app.preferences.style;
     input.addEventListener("change", () => setStyle(app, input.value));

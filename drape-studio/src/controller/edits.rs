@@ -47,22 +47,16 @@ impl Controller {
                 self.session.edit(|d| d.mirror = axes);
             }
             Edit::Part { name, treatment } => self.treat(&name, treatment)?,
-            Edit::Preset { name } => self.choose_preset(&name)?,
-            Edit::Seed { seed } => {
-                let mut preset = self.preset.clone();
-                preset.drape.seed = u64::from(seed);
-                self.set_preset(&preset);
-            }
-            Edit::SaveSettings { name } => self.save_settings(&name)?,
-            Edit::ForgetSettings { name } => {
-                self.session.edit(|d| d.saved.retain(|s| s.name != name));
-            }
+            Edit::Preset { .. }
+            | Edit::Seed { .. }
+            | Edit::Settings { .. }
+            | Edit::SaveSettings { .. }
+            | Edit::ForgetSettings { .. } => self.change_settings(edit)?,
             Edit::Dismiss { result } => {
                 let is_kept = self.session.kept.iter().any(|kept| kept.id == result);
                 ensure!(is_kept, "there is no kept result {result}");
                 self.session.edit(|d| d.dismissed.push(result));
             }
-            Edit::Settings { toml } => self.set_preset(&Preset::from_toml(&toml)?),
             Edit::Undo => {
                 self.situation().check(Action::Undo)?;
                 self.session.undo();
@@ -74,6 +68,26 @@ impl Controller {
         }
         self.edited();
         Ok(Value::Null)
+    }
+
+    /// Settings of the next drape, and those that are saved by name.
+    fn change_settings(&mut self, edit: Edit) -> Result<()> {
+        match edit {
+            Edit::Preset { name } => self.choose_preset(&name)?,
+            Edit::Seed { seed } => {
+                let mut preset = self.preset.clone();
+                preset.drape.seed = u64::from(seed);
+                self.set_preset(&preset);
+            }
+            Edit::SaveSettings { name } => self.save_settings(&name)?,
+            Edit::ForgetSettings { name } => {
+                self.session.edit(|d| d.saved.retain(|s| s.name != name));
+            }
+            Edit::Settings { toml } => self.set_preset(&Preset::from_toml(&toml)?),
+            // Whoever calls this has such an edit.
+            _ => {}
+        }
+        Ok(())
     }
 
     /// After an edit: settings as the document has them, the preview, every page.
