@@ -56,7 +56,7 @@ fn a_job_is_done_with_the_keyboard_alone() {
     page.key("k", 75, 0);
     page.wait("studio.state.kept.length === 1");
     tab_to(&page, "export");
-    page.key("Enter", 13, 0);
+    page.key(" ", 32, 0);
     tab_to(&page, "export-result");
 }
 
