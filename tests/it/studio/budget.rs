@@ -36,7 +36,7 @@ fn a_frame_with_many_landmarks_costs_little_script() {
     let arguments = ["source.ply", "target.ply", "--landmarks", "landmarks.json"];
     let server = Server::start(folder.path(), &arguments);
     let page = super::browser::Page::open(&browser, &server.url, [1280, 800]);
-    page.wait("studio.views.list.every((v) => v.shape) && studio.state.landmarks.length === 68");
+    page.wait("studio.views.source.shape && studio.views.target.shape && studio.state.landmarks.length === 68");
     page.settle();
     // The work of the page alone: what the graphics card does afterwards is not waited for.
     let frame = page.value(
