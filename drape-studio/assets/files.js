@@ -18,6 +18,8 @@ export class Files {
   constructor(app) {
     this.app = app;
     this.opening = Promise.resolve();
+    // The sides that have been opened; the studio tells of them a moment later.
+    this.opened = new Set();
     for (const role of [...SIDES, "landmarks"]) $(`open-${role}`).addEventListener("click", () => this.choose(role));
     this.listenToDrops();
   }
@@ -54,6 +56,7 @@ export class Files {
     view?.wait(`Opening ${name}…`);
     try {
       await send(role);
+      this.opened.add(role);
       words.say("");
     } catch (error) {
       words.complain(error);
@@ -93,7 +96,7 @@ export class Files {
       return;
     }
     // What is free is known once the files that came before are open.
-    const free = () => (this.app.state?.source ? "target" : "source");
+    const free = () => (this.app.state?.source || this.opened.has("source") ? "target" : "source");
     const roles = isQueue ? shapes.map((_, k) => (k === 0 ? "target" : "queue")) : shapes.length === 2 ? SIDES : [side ?? free];
     for (const file of beside) for (const role of this.sidesOf(roles, shapes.length)) await this.open(`beside-${role}`, file);
     for (const file of sessions) await this.open("session", file);

@@ -128,7 +128,7 @@ export class Stage {
 
   askHeat() {
     if (this.heat === "difference") return void this.showDifference();
-    if (!this.heat || this.isHeatAsked || this.heatSerial === this.shown?.serial) return;
+    if (!this.shown || !this.heat || this.isHeatAsked || this.heatSerial === this.shown?.serial) return;
     this.isHeatAsked = true;
     this.app.link.tell({ heat: this.heat });
   }
