@@ -139,7 +139,7 @@ export class Panels {
       row.number.textContent = digitsOf(landmark);
       row.number.setAttribute("aria-label", `Choose ${label}`);
       if (document.activeElement !== row.name) row.name.value = landmark.name;
-      row.name.placeholder = !landmark.target ? "mark it on the target" : !landmark.source ? "mark it on the source" : label;
+      row.name.placeholder = !landmark.target ? "mark it on the target" : !landmark.source ? "mark it on the source" : "name";
       row.name.title = landmark.name;
       row.name.setAttribute("aria-label", `Name of ${label}`);
       row.kind.textContent = landmark.kind;
