@@ -184,6 +184,9 @@ mod tests {
         let uvs = [[0.0, 0.0], [1.0, 0.0], [0.5, 1.0]].map(Some).to_vec();
         assert_eq!(looks.corner_uvs, Some(vec![uvs]));
         assert_eq!(looks.pictures[0].bytes, b"picture");
-        assert_eq!(looks.pictures[0].faces, [0..1]);
+        assert_eq!(
+            looks.pictures[0].faces.as_slice(),
+            std::slice::from_ref(&(0..1))
+        );
     }
 }
