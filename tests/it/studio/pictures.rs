@@ -79,12 +79,6 @@ fn every_state_can_be_drawn() {
     page.press("#settings");
     save(&page, "settings");
     page.value("document.getElementById('settings-dialog').close(), true");
-    // Another scan, on which the landmarks wait for their places.
-    page.press("#open-target");
-    page.choose_file(&pair.join("source.obj"));
-    page.wait("studio.state.target.name === 'source.obj' && studio.views.target.shape && studio.chosenLandmark");
-    probed(&page);
-    save(&page, "next-scan");
     server.kill();
     page.wait("!document.getElementById('offline').hidden");
     save(&page, "offline");
