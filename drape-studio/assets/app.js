@@ -1,12 +1,19 @@
 // The studio's page: what the server tells is shown, what the user does is asked of it.
 
+import { Brush } from "./brush.js";
 import { Cameras } from "./cameras.js";
 import { Chart } from "./chart.js";
 import { control } from "./commands.js";
+import { Legend } from "./heats.js";
+import { Cursor } from "./cursor.js";
+import { Files, showScans } from "./files.js";
+import { Hover } from "./hover.js";
 import { Link } from "./link.js";
+import { Memory } from "./memory.js";
 import { Painter } from "./painter.js";
 import { Panels } from "./panels.js";
 import { Parts } from "./parts.js";
+import { Strip } from "./strip.js";
 import { Stage } from "./stage.js";
 import { Views } from "./views.js";
 import { Words } from "./words.js";
@@ -24,19 +31,28 @@ const stored = () => {
 
 class App {
   constructor() {
-    this.preferences = { style: "wire", theme: null, linked: true, ...stored() };
+    this.preferences = { style: "wire", look: "scan", theme: null, linked: true, ...stored() };
     [this.state, this.progress, this.figures, this.chosen, this.dragging] = [null, null, null, null, null];
     this.painter = new Painter(this, $("canvas"));
     this.views = new Views(this);
     this.cameras = new Cameras(this);
     this.stage = new Stage(this);
+    this.memory = new Memory(this);
+    this.legend = new Legend(this);
+    this.hover = new Hover(this);
     this.parts = new Parts(this);
+    this.files = new Files(this);
     this.panels = new Panels(this);
+    this.strip = new Strip(this);
+    this.brush = new Brush(this);
+    this.cursor = new Cursor(this);
     this.words = new Words(this);
     this.chart = new Chart($("chart"));
     this.dress();
     control(this);
-    new ResizeObserver(() => this.resized()).observe(document.querySelector("main"));
+    const observer = new ResizeObserver(() => this.resized());
+    [document.querySelector("main"), ...this.views.list.map((view) => view.element)].forEach((element) => observer.observe(element));
+    this.stage.remember(this.memory.before);
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.dress());
     this.link = new Link({
       told: (message) => this.hear(message),
@@ -61,8 +77,13 @@ class App {
   }
 
   resized() {
+    this.views.measure();
     this.chart.draw();
     this.painter.invalidate();
+  }
+
+  get landmarks() {
+    return this.state?.landmarks ?? [];
   }
 
   // The shape that the result's view was last sent.
@@ -99,9 +120,14 @@ class App {
     this.words.nameViews();
     this.panels.show(state);
     this.parts.show(state);
+    this.strip.show(state);
+    this.brush.show(state);
+    showScans(this, state.scans);
     this.panels.showProgress(this.progress, state);
-    if (!state.landmarks.some((l) => l.id === this.chosen)) this.chosen = null;
+    this.panels.showFigures(this.figures, state);
+    this.chooseNext();
     this.words.advise();
+    this.legend.show();
     this.painter.moved();
   }
 
@@ -114,9 +140,10 @@ class App {
 
   setFigures(figures) {
     this.figures = figures;
-    this.panels.showFigures(figures);
+    if (this.state) this.panels.showFigures(figures, this.state);
     if (!figures) return;
     this.chart.add("Q", figures.iteration, figures.q);
+    this.chart.add("mean distance", figures.iteration, figures.mean_distance);
     this.chart.draw();
   }
 
@@ -149,8 +176,32 @@ class App {
 
   async place(view, ray) {
     if (!this.state) return;
-    const answer = await this.edit("place", { shape: view.name, ray });
-    this.choose(answer ? answer.landmark : null);
+    try {
+      const answer = await this.link.ask("edit", { do: "place", shape: view.name, ray });
+      if (!answer) this.words.note("The click missed: nothing is there");
+      this.choose(answer ? answer.landmark : null);
+      this.chooseNext();
+    } catch (error) {
+      this.words.complain(error);
+    }
+  }
+
+  // Of landmarks that wait for their places on another scan, the first is chosen, so that it is seen which one is meant.
+  chooseNext() {
+    const waiting = this.landmarks.filter((l) => !l.source || !l.target);
+    if (!this.chosenLandmark) this.chosen = null;
+    if (waiting.length > 1) this.choose(waiting[0].id);
+  }
+
+  // Gives up the pair that is half made; else nothing is chosen any more.
+  escape() {
+    if (this.cursor.isShown) return void this.cursor.hide();
+    const waiting = this.landmarks.filter((l) => !l.source || !l.target);
+    if (waiting.length === 1) {
+      this.edit("delete", { landmark: waiting[0].id });
+      this.words.note("The half pair is gone; undo brings it back");
+    }
+    this.choose(null);
   }
 
   // Rays of a drag go one after the other; those that come meanwhile are passed over, but the last.
@@ -172,7 +223,7 @@ class App {
   }
 
   get chosenLandmark() {
-    return this.state?.landmarks.find((l) => l.id === this.chosen);
+    return this.landmarks.find((l) => l.id === this.chosen);
   }
 
   // Where a point of a view is on the page: for tests.

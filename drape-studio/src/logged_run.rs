@@ -3,6 +3,7 @@
 use anyhow::{Context as _, Result};
 use mesh_core::Positions;
 use mesh_draping::{Draping, Parts, Preset, Transfer};
+use mesh_metrics::Counterparts;
 use neural_drape::network::NetworkMap;
 use neural_drape::{DrapeState, StepReport};
 
@@ -126,6 +127,11 @@ impl LoggedRun {
     /// The network that moves the vertices; none where there is none, or where it alone does not.
     pub(crate) fn network(&self) -> Option<NetworkMap> {
         self.draping.network()
+    }
+
+    /// What of the two shapes is compared.
+    pub(crate) fn counterparts(&self) -> Counterparts {
+        self.draping.counterparts()
     }
 
     pub(crate) fn state(&mut self) -> DrapeState {

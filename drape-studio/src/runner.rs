@@ -35,6 +35,8 @@ pub(crate) enum Order {
     Parts(Parts),
     /// It gets more iterations.
     Extend,
+    /// To stand still, shown and saved, and to say so here.
+    Rest(Sender<()>),
 }
 
 /// What the thread tells.
@@ -182,6 +184,13 @@ impl Run<'_> {
                     self.rest(Update::Paused(self.drape.log().clone()))?;
                 }
                 Some(Order::Pause) => {}
+                Some(Order::Rest(rested)) => {
+                    if std::mem::take(&mut is_running) {
+                        self.rest(Update::Paused(self.drape.log().clone()))?;
+                    }
+                    // Whoever asked may have lost patience.
+                    rested.send(()).ok();
+                }
                 Some(Order::Step) => {
                     is_running = false;
                     if self.advance()? {
@@ -252,6 +261,7 @@ impl Run<'_> {
         let provenance = Provenance {
             log: drape.log().clone(),
             network: drape.network(),
+            counterparts: Arc::new(drape.counterparts()),
         };
         let is_wanted = lock(self.is_wanted);
         if *is_wanted {
@@ -265,6 +275,7 @@ impl Run<'_> {
         self.parts.figures.ask(FiguresJob {
             displayed: self.parts.displayed.clone(),
             positions: Arc::new(self.drape.positions()),
+            counterparts: Arc::new(self.drape.counterparts()),
             landmarks: landmarks(log.last_landmarks()),
             iteration: Some(log.iteration),
             is_resting,

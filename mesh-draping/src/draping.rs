@@ -2,13 +2,13 @@
 
 use mesh_core::{Landmark, Positions};
 use mesh_init::InitInput;
+use mesh_metrics::Counterparts;
 use neural_drape::network::NetworkMap;
 use neural_drape::{
     Drape, DrapeConfig, DrapeError, DrapeInput, DrapeState, Regions, Repair, StepReport,
 };
 
 use crate::ending::{decided_overlap, left_out, repaired};
-use crate::explain::Counted;
 use crate::stages::{DRAPING, REFINING};
 use crate::stand_in::StandIn;
 use crate::start::Start;
@@ -254,6 +254,20 @@ impl Draping {
         &self.notes
     }
 
+    /// Which parts of either shape the run takes as having a counterpart on the other.
+    pub fn counterparts(&self) -> Counterparts {
+        let overlap = self.drape.overlap();
+        let attraction = match &self.stand_in {
+            Some(_) => &self.regions.attraction,
+            None => self.drape.attraction(),
+        };
+        Counterparts {
+            of_vertices: attraction.map(|&a| a > 0.0),
+            target_ends: overlap.mesh_exceeds,
+            mesh_ends: overlap.target_exceeds,
+        }
+    }
+
     /// The network that moves the vertices; none where there is none, or where it alone does not.
     pub fn network(&self) -> Option<NetworkMap> {
         self.drape.network()
@@ -389,21 +403,12 @@ impl Draping {
             let (pair, truth) = (&self.pair, self.truth.as_ref());
             self.stages.time("figures", || pair.judge(&draped, truth))?
         };
-        let overlap = self.drape.overlap();
-        let attraction = match &self.stand_in {
-            Some(_) => &self.regions.attraction,
-            None => self.drape.attraction(),
-        };
-        let counted = Counted {
-            attraction,
-            mesh_exceeds: overlap.mesh_exceeds,
-            target_exceeds: overlap.target_exceeds,
-        };
+        let counterparts = self.counterparts();
         let explanation = {
             let pair = &self.pair;
             let distances = &report.vertex_distances;
             self.stages.time("explanation", || {
-                crate::explain::explain(pair, &draped, distances, &counted)
+                crate::explain::explain(pair, &draped, distances, &counterparts)
             })
         };
         Ok(Outcome {

@@ -3,11 +3,11 @@
 use std::path::Path;
 
 use mesh_core::{Positions, UnitFrame, VertexData};
-use mesh_metrics::Report;
+use mesh_metrics::{Counterparts, Report};
 use neural_drape::network::NetworkMap;
 use neural_drape::Warp;
 
-use crate::explain::{explain, Counted};
+use crate::explain::explain;
 use crate::{Error, Explanation, History, Note, Pair, Preset, Stages};
 
 /// A draped source with its report.
@@ -48,13 +48,9 @@ impl Outcome {
         draped: Positions,
     ) -> Result<Self, Error> {
         let report = pair.judge(&draped, None)?;
-        let counted = Counted {
-            attraction: &VertexData::new(draped.len(), 1.0),
-            mesh_exceeds: false,
-            target_exceeds: false,
-        };
+        let counterparts = Counterparts::all(draped.len());
         Ok(Self {
-            explanation: explain(&pair, &draped, &report.vertex_distances, &counted),
+            explanation: explain(&pair, &draped, &report.vertex_distances, &counterparts),
             pair,
             preset,
             by_landmarks: initial.clone(),

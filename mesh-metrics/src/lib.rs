@@ -5,6 +5,7 @@
 //! | get everything at once | [`evaluate()`] → [`Report`] |
 //! | score fit and distortion together | [`q_transfer()`] |
 //! | measure distances both ways | [`SurfaceDistances::measure`], [`vertex_distances`] |
+//! | measure them over what has a counterpart on the other | [`Counterparts::distances`] |
 //! | sum them up | [`chamfer()`], [`hausdorff_sampled`], [`directed_hausdorff_sampled`], [`percentiles`] |
 //! | measure distortion | [`dirichlet_unit_area`], [`dirichlet_energy`], [`face_stretch`], [`mean_angle_deviation`] |
 //! | find defects | [`folded_edges`], [`skinny_triangles`], [`triangle_qualities`], [`opposed_triangles`], [`self_intersections`] |
@@ -17,6 +18,7 @@
 
 mod chamfer;
 mod config;
+mod counterparts;
 mod defects;
 mod dirichlet;
 mod distances;
@@ -31,6 +33,7 @@ mod table;
 
 pub use chamfer::{chamfer, Chamfer};
 pub use config::EvaluationConfig;
+pub use counterparts::{CountedDistances, Counterparts};
 pub use defects::{
     folded_edges, mean_angle_deviation, opposed_triangles, skinny_triangles, triangle_qualities,
     FOLD_COSINE, SKINNY_QUALITY,

@@ -18,6 +18,7 @@ impl Controller {
         self.situation().check(Action::Command(command))?;
         match command {
             Command::Drape => {
+                self.keep_result()?;
                 self.begin_paused()?;
                 self.order(Order::Go)?;
             }
@@ -38,6 +39,7 @@ impl Controller {
                 self.resume(Order::Go)?;
             }
             Command::Reset => {
+                self.keep_result()?;
                 self.leave_run();
                 self.broadcast.forget_drape();
                 self.ask_preview();
@@ -62,7 +64,11 @@ impl Controller {
         self.start_runner(log, None)
     }
 
-    fn start_runner(&mut self, log: RunLog, state: Option<neural_drape::DrapeState>) -> Result<()> {
+    pub(super) fn start_runner(
+        &mut self,
+        log: RunLog,
+        state: Option<neural_drape::DrapeState>,
+    ) -> Result<()> {
         let displayed = self.displayed.clone().context(OPEN_FIRST)?;
         let n_more = Draping::n_more(&Preset::from_toml(&log.settings)?);
         self.n_runs += 1;
@@ -89,7 +95,7 @@ impl Controller {
         Ok(())
     }
 
-    fn order(&mut self, order: Order) -> Result<()> {
+    pub(super) fn order(&mut self, order: Order) -> Result<()> {
         let run = self.run.as_ref().context("there is no drape")?;
         run.runner.order(order);
         Ok(())

@@ -7,7 +7,7 @@ use serde_json::Value;
 
 use super::can::Action;
 use super::{Controller, Edit};
-use crate::session::{Mark, MAX_MARKS};
+use crate::session::{Mark, NamedSettings, MAX_MARKS};
 
 /// Longest name of a landmark, in characters.
 const MAX_NAME: usize = 80;
@@ -15,7 +15,7 @@ const MAX_NAME: usize = 80;
 impl Controller {
     /// Makes an edit; the number of the landmark where a place is marked.
     pub(super) fn make(&mut self, edit: Edit) -> Result<Value> {
-        if !matches!(edit, Edit::Drag { .. }) {
+        if !matches!(edit, Edit::Drag { .. } | Edit::Paint(_)) {
             self.finish_drag();
         }
         match edit {
@@ -35,6 +35,8 @@ impl Controller {
                 self.change_mark(landmark, |m| m.name = name)?;
             }
             Edit::Kind { landmark, kind } => self.change_mark(landmark, |m| m.kind = kind)?,
+            Edit::Paint(dab) => return self.paint(&dab),
+            Edit::ClearWeights => self.session.edit(|d| d.parts.weights = None),
             Edit::Clear => {
                 self.situation().check(Action::Clear)?;
                 self.session.edit(|d| d.marks.clear());
@@ -45,13 +47,16 @@ impl Controller {
                 self.session.edit(|d| d.mirror = axes);
             }
             Edit::Part { name, treatment } => self.treat(&name, treatment)?,
-            Edit::Preset { name } => self.choose_preset(&name)?,
-            Edit::Seed { seed } => {
-                let mut preset = self.preset.clone();
-                preset.drape.seed = u64::from(seed);
-                self.set_preset(&preset);
+            Edit::Preset { .. }
+            | Edit::Seed { .. }
+            | Edit::Settings { .. }
+            | Edit::SaveSettings { .. }
+            | Edit::ForgetSettings { .. } => self.change_settings(edit)?,
+            Edit::Dismiss { result } => {
+                let is_kept = self.session.kept.iter().any(|kept| kept.id == result);
+                ensure!(is_kept, "there is no kept result {result}");
+                self.session.edit(|d| d.dismissed.push(result));
             }
-            Edit::Settings { toml } => self.set_preset(&Preset::from_toml(&toml)?),
             Edit::Undo => {
                 self.situation().check(Action::Undo)?;
                 self.session.undo();
@@ -63,6 +68,26 @@ impl Controller {
         }
         self.edited();
         Ok(Value::Null)
+    }
+
+    /// Settings of the next drape, and those that are saved by name.
+    fn change_settings(&mut self, edit: Edit) -> Result<()> {
+        match edit {
+            Edit::Preset { name } => self.choose_preset(&name)?,
+            Edit::Seed { seed } => {
+                let mut preset = self.preset.clone();
+                preset.drape.seed = u64::from(seed);
+                self.set_preset(&preset);
+            }
+            Edit::SaveSettings { name } => self.save_settings(&name)?,
+            Edit::ForgetSettings { name } => {
+                self.session.edit(|d| d.saved.retain(|s| s.name != name));
+            }
+            Edit::Settings { toml } => self.set_preset(&Preset::from_toml(&toml)?),
+            // Whoever calls this has such an edit.
+            _ => {}
+        }
+        Ok(())
     }
 
     /// After an edit: settings as the document has them, the preview, every page.
@@ -78,8 +103,31 @@ impl Controller {
         self.changed();
     }
 
-    /// A preset, with the seed as it is.
+    /// Keeps the settings as they are under a name.
+    fn save_settings(&mut self, name: &str) -> Result<()> {
+        let name: String = name.trim().chars().take(MAX_NAME).collect();
+        ensure!(!name.is_empty(), "settings are saved under a name");
+        let is_preset = Preset::names().any(|known| known == name);
+        ensure!(
+            !is_preset,
+            "{name} is a preset of the program; choose another name"
+        );
+        self.session.edit(|d| {
+            d.saved.retain(|saved| saved.name != name);
+            let toml = d.settings.clone();
+            d.saved.push(NamedSettings { name, toml });
+        });
+        Ok(())
+    }
+
+    /// Settings that were saved, or a preset, with the seed as it is.
     fn choose_preset(&mut self, name: &str) -> Result<()> {
+        let mut saved = self.session.document.saved.iter();
+        if let Some(saved) = saved.find(|saved| saved.name == name) {
+            let toml = saved.toml.clone();
+            self.session.edit(|d| d.settings = toml);
+            return Ok(());
+        }
         let mut preset = Preset::named(name)?;
         preset.drape.seed = self.preset.drape.seed;
         self.set_preset(&preset);

@@ -14,6 +14,7 @@ impl Controller {
                 self.describe(place)
             }
             Query::PartTriangles { name } => self.part_triangles(name),
+            Query::Weights => self.weights_state(),
             Query::Curves => json!(self.broadcast.curves()),
         }
     }

@@ -24,6 +24,17 @@ pub(crate) enum Request {
     Query(Query),
     Edit(Edit),
     Command(Command),
+    Kept(KeptRequest),
+}
+
+/// What is done with results that are kept.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(tag = "do", rename_all = "snake_case", deny_unknown_fields)]
+pub(crate) enum KeptRequest {
+    /// Keeps what the drape came to.
+    Keep,
+    /// Goes back to a kept result; the present one is kept.
+    BringBack { result: u32 },
 }
 
 /// What is asked without changing anything.
@@ -36,6 +47,31 @@ pub(crate) enum Query {
     PartTriangles { name: String },
     /// The curves of the drape so far.
     Curves,
+    /// The weights of attraction, one per vertex.
+    Weights,
+}
+
+/// One touch of the brush.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Dab {
+    /// Where it is painted: on the source, or on the source as it is shown now.
+    pub(crate) shape: Shape,
+    pub(crate) ray: Option<Ray>,
+    /// In longest sides of the source's box.
+    pub(crate) radius: f64,
+    /// What the weights go to, and how far with this dab; 0..=1.
+    pub(crate) weight: f64,
+    pub(crate) strength: f64,
+    pub(crate) done: bool,
+}
+
+impl Dab {
+    /// Whether its numbers are such as a brush has.
+    pub(crate) fn is_sound(&self) -> bool {
+        let is_share = |x: f64| (0.0..=1.0).contains(&x);
+        self.radius > 0.0 && self.radius <= 1.0 && is_share(self.weight) && is_share(self.strength)
+    }
 }
 
 /// A change of landmarks, parts or settings.
@@ -65,6 +101,10 @@ pub(crate) enum Edit {
         landmark: u32,
         kind: MarkKind,
     },
+    /// Paints weights of attraction on the source; one edit from the first dab to the one that is `done`.
+    Paint(Dab),
+    /// Forgets the weights.
+    ClearWeights,
     /// Deletes all landmarks.
     Clear,
     /// Axes of source and target across which landmarks are placed twice.
@@ -84,6 +124,18 @@ pub(crate) enum Edit {
     },
     Settings {
         toml: String,
+    },
+    /// Keeps the settings under a name, in the place of those that had it.
+    SaveSettings {
+        name: String,
+    },
+    /// Forgets settings that were saved under a name.
+    ForgetSettings {
+        name: String,
+    },
+    /// Takes a kept result out of the list.
+    Dismiss {
+        result: u32,
     },
     Undo,
     Redo,

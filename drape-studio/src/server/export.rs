@@ -9,12 +9,11 @@ use axum::response::{IntoResponse, Response};
 use mesh_draping::landmarks::{write, Form};
 use mesh_draping::{initial_deformation, Outcome, Preset};
 use mesh_render::{Gallery, Page, View};
-use tokio::sync::oneshot;
 use tokio::task::spawn_blocking;
 
-use super::App;
+use super::{snapshot, App};
 use crate::broadcast::ShownShape;
-use crate::controller::{Inbox, Snapshot, OPEN_FIRST};
+use crate::controller::{Snapshot, OPEN_FIRST};
 use crate::replay::Replayed;
 use crate::session::{landmarks, RunLog, Session};
 use crate::shapes::Shapes;
@@ -29,11 +28,9 @@ struct Download {
     bytes: Vec<u8>,
 }
 
-/// The result, the warp, the landmarks, the report or the session.
+/// The result, the warp, the landmarks, the weights, the report or the session.
 pub(super) async fn export(State(app): State<Arc<App>>, Path(what): Path<String>) -> Response {
-    let (sender, answer) = oneshot::channel();
-    app.controller.send(Inbox::Snapshot(sender));
-    let Ok(snapshot) = answer.await else {
+    let Some(snapshot) = snapshot(&app).await else {
         return StatusCode::SERVICE_UNAVAILABLE.into_response();
     };
     let made = spawn_blocking(move || make(&what, snapshot)).await;
@@ -89,6 +86,7 @@ fn make(what: &str, snapshot: Snapshot) -> Result<Download> {
             "application/json",
             work.landmarks().into_bytes(),
         )),
+        "weights" => work.weights(),
         "result" => work.result(),
         "warp" => Ok(download(
             "result.drape",
@@ -131,6 +129,17 @@ impl Work {
         let (source, target) = (&self.shapes.source, &self.shapes.target);
         let complete = landmarks(&self.session.document.marks);
         write(&complete, source, target, Form::Json).text
+    }
+
+    /// The weights that were painted, for `drape --weights`.
+    fn weights(&self) -> Result<Download> {
+        let path = self.session.document.parts.weights.as_ref();
+        let path = path.filter(|path| !path.starts_with("property:"));
+        Ok(Download {
+            name: "weights.txt".to_owned(),
+            kind: "text/plain; charset=utf-8",
+            bytes: std::fs::read(path.context("no weights were painted")?)?,
+        })
     }
 
     /// The shape that is shown and how it came about.

@@ -3,6 +3,8 @@
 use mesh_core::{Landmark, LandmarkKind, MeshPoint, Point3, VertexId};
 use serde::{Deserialize, Serialize};
 
+use super::file::fnv1a;
+
 /// A landmark as a session keeps it: every number exactly.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -84,4 +86,70 @@ impl SourcePlace {
 /// The landmarks of all marks that have both sides.
 pub(crate) fn landmarks(marks: &[Mark]) -> Vec<Landmark> {
     marks.iter().filter_map(Mark::landmark).collect()
+}
+
+/// The number of each mark: the row that its landmark has in a file of landmarks, as the report and the command line
+/// count; none as long as a side is missing.
+pub(crate) fn numbers(marks: &[Mark]) -> impl Iterator<Item = Option<usize>> + '_ {
+    let mut row = 0..;
+    marks
+        .iter()
+        .map(move |mark| mark.landmark().and_then(|_| row.next()))
+}
+
+/// What tells one list of landmarks from another: a hash of all that decides a drape.
+pub(crate) fn fingerprint(landmarks: &[Landmark]) -> String {
+    let numbers = landmarks.iter().flat_map(|l| {
+        let (source, target) = (&l.source, l.target);
+        let rows = source.vertices.map(|v| v.index() as u64);
+        let places = source
+            .weights
+            .into_iter()
+            .chain(target.coords.iter().copied());
+        let places = places.map(f64::to_bits).collect::<Vec<_>>();
+        rows.into_iter()
+            .chain(places)
+            .chain([u64::from(l.kind == LandmarkKind::Rigid)])
+    });
+    let bytes: Vec<u8> = numbers.flat_map(u64::to_le_bytes).collect();
+    format!("{:016x}", fnv1a(&bytes))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn mark(id: u32, target: Option<[f64; 3]>) -> Mark {
+        Mark {
+            id,
+            name: String::new(),
+            source: Some(SourcePlace {
+                vertices: [0, 1, 2],
+                weights: [0.5, 0.25, 0.25],
+            }),
+            target,
+            kind: MarkKind::Soft,
+        }
+    }
+
+    #[test]
+    fn marks_are_numbered_as_the_rows_of_a_file() {
+        let there = Some([0.0; 3]);
+        let marks = [mark(7, there), mark(8, None), mark(9, there)];
+        let numbers: Vec<_> = numbers(&marks).collect();
+        assert_eq!(numbers, [Some(0), None, Some(1)]);
+    }
+
+    #[test]
+    fn a_fingerprint_tells_places_and_kinds_but_no_names() {
+        let one = landmarks(&[mark(1, Some([1.0, 2.0, 3.0]))]);
+        let mut named = one.clone();
+        named[0].name = Some("nose".to_owned());
+        assert_eq!(fingerprint(&one), fingerprint(&named));
+        let mut rigid = one.clone();
+        rigid[0].kind = LandmarkKind::Rigid;
+        let moved = landmarks(&[mark(1, Some([1.0, 2.0, 3.5]))]);
+        assert_ne!(fingerprint(&one), fingerprint(&rigid));
+        assert_ne!(fingerprint(&one), fingerprint(&moved));
+    }
 }

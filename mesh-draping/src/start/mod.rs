@@ -55,11 +55,13 @@ impl Start {
     /// # Errors
     /// As [`adjusted`].
     pub(crate) fn of_shape(pair: &Pair, preset: &Preset, shape: &Positions) -> Result<Self, Error> {
-        let positions = match pair.landmarks.is_empty() {
-            true => shape.clone(),
-            false => adjusted(pair, shape)?,
+        let positions = if pair.landmarks.is_empty() {
+            shape.clone()
+        } else {
+            adjusted(pair, shape)?
         };
         Ok(Self {
+            by_landmarks: positions.clone(),
             shape: InitialShape {
                 positions,
                 notes: Vec::new(),

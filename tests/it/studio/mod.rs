@@ -1,11 +1,17 @@
 //! The studio, used in a browser.
 
+mod access;
 mod big;
 mod browser;
+mod budget;
+mod defects;
 mod discard;
 mod going_on;
+mod history;
 mod inputs;
+mod looks;
 mod page;
+mod painting;
 mod pictures;
 mod restart;
 mod safety;

@@ -66,6 +66,16 @@ fn every_state_can_be_drawn() {
     page.press("#undo");
     page.wait("studio.shown.kind === 1");
     colours(&page, &save);
+    page.press("#keep");
+    page.wait(
+        "studio.state.kept[0]?.figures && document.querySelector('#kept img').naturalWidth > 0",
+    );
+    page.press("#step");
+    page.wait("studio.shown.iteration > studio.state.kept[0].iteration");
+    page.press("#kept .kept");
+    page.wait("studio.strip.shape");
+    save(&page, "compared");
+    page.press("#kept .kept");
     page.press("#settings");
     save(&page, "settings");
     page.value("document.getElementById('settings-dialog').close(), true");

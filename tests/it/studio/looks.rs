@@ -1,0 +1,159 @@
+//! What was scanned is seen: pictures, colours of vertices, wrinkles; and from where one looks.
+
+use std::fs;
+
+use serde_json::json;
+
+use super::browser::{browser, Page};
+use super::page::{middle, pixel, probed};
+use super::server::Server;
+use crate::support::Workplace;
+
+/// A bitmap of one colour.
+fn bitmap([red, green, blue]: [u8; 3]) -> Vec<u8> {
+    let side = 4_u32;
+    let mut bytes = b"BM".to_vec();
+    for n in [54 + 3 * side * side, 0, 54, 40, side, side] {
+        bytes.extend(n.to_le_bytes());
+    }
+    bytes.extend([1, 0, 24, 0]);
+    bytes.extend([0; 24]);
+    bytes.extend([blue, green, red].repeat((side * side) as usize));
+    bytes
+}
+
+/// The target of the standard pair as text, green all over.
+fn green_scan(place: &Workplace) {
+    let soup = mesh_core::io::read_soup(place.path("target.ply")).unwrap();
+    let mut text = format!(
+        "ply\nformat ascii 1.0\nelement vertex {}\nproperty float x\nproperty float y\nproperty float z\n\
+         property uchar red\nproperty uchar green\nproperty uchar blue\nelement face {}\n\
+         property list uchar int vertex_indices\nend_header\n",
+        soup.positions.len(),
+        soup.faces.len()
+    );
+    for p in &soup.positions {
+        text += &format!("{} {} {} 10 220 10\n", p.x, p.y, p.z);
+    }
+    for f in &soup.faces {
+        text += &format!("3 {} {} {}\n", f[0], f[1], f[2]);
+    }
+    place.write("green.ply", &text);
+}
+
+fn is_mostly(page: &Page, side: &str, channel: usize) -> bool {
+    let color = pixel(page, side);
+    (0..3).all(|k| k == channel || color[k] + 60 < color[channel])
+}
+
+#[test]
+fn a_textured_creature_is_marked_from_its_texture() {
+    let Some(browser) = browser() else { return };
+    let place = Workplace::new();
+    green_scan(&place);
+    place.write("not_there.mtl", "newmtl skin\nmap_Kd skin.bmp\n");
+    fs::write(place.path("skin.bmp"), bitmap([220, 20, 20])).unwrap();
+    let server = Server::start(&place.path(""), &[]);
+    let page = Page::open(&browser, &server.url, [1280, 800]);
+    page.wait("studio.state");
+    let files = ["source.obj", "not_there.mtl", "skin.bmp"].map(|name| place.path(name));
+    page.drop_files(middle(&page, "source"), &files);
+    page.wait("studio.views.source.shape?.paint");
+    page.drop_files(middle(&page, "target"), &[place.path("green.ply")]);
+    page.wait("studio.views.target.shape?.paint && studio.views.result.shape");
+    page.press("input[name=style][value=shaded]");
+    probed(&page);
+    assert!(
+        is_mostly(&page, "source", 0),
+        "{:?}",
+        pixel(&page, "source")
+    );
+    assert!(
+        is_mostly(&page, "target", 1),
+        "{:?}",
+        pixel(&page, "target")
+    );
+    assert!(
+        is_mostly(&page, "result", 0),
+        "{:?}",
+        pixel(&page, "result")
+    );
+    for side in ["source", "target"] {
+        page.click(middle(&page, side));
+        page.wait(&format!("studio.state.landmarks[0]?.{side}"));
+    }
+
+    // Wrinkles and clay have no pictures.
+    page.key("v", 86, 0);
+    page.wait("studio.preferences.look === 'matcap'");
+    probed(&page);
+    assert!(!is_mostly(&page, "source", 0));
+    page.key("v", 86, 0);
+    page.key("v", 86, 0);
+    page.wait("studio.preferences.look === 'scan'");
+    // The graphics card forgets the pictures, too.
+    page.value("(globalThis.lose = studio.painter.renderer.gl.getExtension('WEBGL_lose_context')).loseContext(), true");
+    page.wait("studio.painter.renderer.gl.isContextLost()");
+    page.value("lose.restoreContext(), true");
+    page.wait("!studio.painter.renderer.gl.isContextLost()");
+    probed(&page);
+    assert!(
+        is_mostly(&page, "source", 0),
+        "{:?}",
+        pixel(&page, "source")
+    );
+}
+
+#[test]
+fn cameras_look_from_all_sides_with_and_without_perspective() {
+    let Some(browser) = browser() else { return };
+    let place = Workplace::new();
+    let server = Server::start(&place.path(""), &["source.obj", "target.ply"]);
+    let page = Page::open(&browser, &server.url, [1280, 800]);
+    page.wait("studio.views.result.shape");
+    for (key, [yaw, pitch]) in [
+        ("1", [0.0, 0.0]),
+        ("2", [3.1416, 0.0]),
+        ("4", [-1.5708, 0.0]),
+        ("8", [0.0, -1.5708]),
+    ] {
+        page.key(key, 0, 0);
+        let look = page.value("[studio.views.source.camera.yaw, studio.views.source.camera.pitch]");
+        let off = |k: usize, x: f64| (look[k].as_f64().unwrap() - x).abs() < 1e-3;
+        assert!(off(0, yaw) && off(1, pitch), "{key}: {look}");
+    }
+    page.press("[data-look=front]");
+    for is_flat in [false, true] {
+        // A place is picked where it is drawn.
+        let apart = page.value(
+            "(async () => { const view = studio.views.source; const r = view.element.getBoundingClientRect(); \
+             const at = { clientX: r.left + 0.6 * r.width, clientY: r.top + 0.45 * r.height }; \
+             const hit = await studio.link.ask('query', { do: 'pick', shape: 'source', ray: view.ray(at) }); \
+             const seen = view.project(view.shape.place(hit.source).point); \
+             return Math.hypot(seen.x + r.left - at.clientX, seen.y + r.top - at.clientY); })()",
+        );
+        assert!(
+            apart.as_f64().is_some_and(|d| d < 1.0),
+            "{is_flat}: {apart}"
+        );
+        page.key("5", 0, 0);
+    }
+    assert_eq!(
+        page.value("studio.views.target.camera.isFlat"),
+        json!(false)
+    );
+    // The wheel comes nearer to what is under the pointer.
+    let kept = page.value(
+        "(() => { const view = studio.views.target; const r = view.element.getBoundingClientRect(); const p = view.shape.point(0); \
+         const before = view.project(p); const at = { clientX: r.left + before.x, clientY: r.top + before.y }; \
+         const d = view.camera.distance; \
+         view.element.dispatchEvent(new WheelEvent('wheel', { ...at, deltaY: -300, cancelable: true, bubbles: true })); \
+         return [view.camera.distance < d]; })()",
+    );
+    assert_eq!(kept, json!([true]));
+    // One view large, and all again.
+    page.key("x", 88, 0);
+    page.wait("studio.views.list.filter((v) => v.element.offsetParent).length === 1 && studio.views.list.some((v) => v.box.width > 700)");
+    page.key("x", 88, 0);
+    page.wait("studio.views.list.every((v) => v.box.width > 200)");
+}
