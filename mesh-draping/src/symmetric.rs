@@ -111,7 +111,7 @@ mod tests {
     fn what_is_not_symmetric_is_refused() {
         let mut soup = shapes::quad_sphere(4);
         for p in &mut soup.positions {
-            let bump = (-2.0 * (p - Point3::new(0.6, 0.6, 0.5)).norm_squared()).exp();
+            let bump: f64 = (-2.0 * (*p - Point3::new(0.6, 0.6, 0.5)).norm_squared()).exp();
             *p += p.coords * 1.5 * bump;
         }
         let source = Source::of_soup(soup, Seams::EXACT).unwrap();

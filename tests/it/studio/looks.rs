@@ -1,5 +1,6 @@
 //! What was scanned is seen: pictures, colours of vertices, wrinkles; and from where one looks.
 
+use std::f64::consts::{FRAC_PI_2, PI};
 use std::fs;
 
 use serde_json::json;
@@ -24,7 +25,8 @@ fn bitmap([red, green, blue]: [u8; 3]) -> Vec<u8> {
 
 /// The target of the standard pair as text, green all over.
 fn green_scan(place: &Workplace) {
-    let soup = mesh_core::io::read_soup(place.path("target.ply")).unwrap();
+    let soup =
+        mesh_core::io::read_soup(place.path("target.ply")).expect("the workplace has a target");
     let mut text = format!(
         "ply\nformat ascii 1.0\nelement vertex {}\nproperty float x\nproperty float y\nproperty float z\n\
          property uchar red\nproperty uchar green\nproperty uchar blue\nelement face {}\n\
@@ -113,9 +115,9 @@ fn cameras_look_from_all_sides_with_and_without_perspective() {
     page.wait("studio.views.result.shape");
     for (key, [yaw, pitch]) in [
         ("1", [0.0, 0.0]),
-        ("2", [3.1416, 0.0]),
-        ("4", [-1.5708, 0.0]),
-        ("8", [0.0, -1.5708]),
+        ("2", [PI, 0.0]),
+        ("4", [-FRAC_PI_2, 0.0]),
+        ("8", [0.0, -FRAC_PI_2]),
     ] {
         page.key(key, 0, 0);
         let look = page.value("[studio.views.source.camera.yaw, studio.views.source.camera.pitch]");
