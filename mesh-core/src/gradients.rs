@@ -36,12 +36,12 @@ pub fn map_gradients(rest: &PolygonSoup, moved: &[Point3]) -> Vec<Option<Matrix3
     let mut at_vertex = vec![Sum::default(); moved.len()];
     let mut total = Sum::default();
     let mut pieces = Vec::new();
-    for corners in &rest.faces {
+    for corners in rest.faces.iter().flat_map(|face| fan(face)) {
         let Some(piece) = piece(&rest.positions, moved, corners) else {
             continue;
         };
         total.add(&piece, 1.0);
-        for &v in corners {
+        for v in corners {
             at_vertex[place_of[v as usize]].add(&piece, 1.0);
         }
         pieces.push(piece);
@@ -158,10 +158,7 @@ fn places(moved: &[Point3]) -> Vec<usize> {
         .collect()
 }
 
-fn piece(rest: &[Point3], moved: &[Point3], corners: &[u32]) -> Option<Piece> {
-    let &[a, b, c] = corners else {
-        return None;
-    };
+fn piece(rest: &[Point3], moved: &[Point3], [a, b, c]: [u32; 3]) -> Option<Piece> {
     let frame = |x: &[Point3]| {
         let [a, b, c] = [a, b, c].map(|v| x[v as usize]);
         let area = (b - a).cross(&(c - a));
@@ -175,10 +172,18 @@ fn piece(rest: &[Point3], moved: &[Point3], corners: &[u32]) -> Option<Piece> {
         centre: Point3::from((p + q + r) / 3.0),
         map,
         area,
-        has_moved: corners
+        has_moved: [a, b, c]
+            .map(|v| v as usize)
             .iter()
-            .any(|&v| rest[v as usize] != moved[v as usize]),
+            .any(|&v| rest[v] != moved[v]),
     })
+}
+
+/// The triangles from the first corner of a polygon.
+fn fan(face: &[u32]) -> impl Iterator<Item = [u32; 3]> + '_ {
+    face.windows(2)
+        .skip(1)
+        .map(|side| [face[0], side[0], side[1]])
 }
 
 #[cfg(test)]
@@ -188,15 +193,15 @@ mod tests {
 
     #[test]
     fn a_similarity_is_its_own_gradient_at_every_vertex() {
-        let soup = crate::shapes::icosphere(1);
         let similar = Rotation3::from_euler_angles(0.3, -1.1, 2.0).into_inner() * 92.0;
-        let moved: Vec<Point3> = soup
-            .positions
-            .iter()
-            .map(|p| Point3::from(similar * p.coords) + Vector3::new(5.0, -1.0, 3.0))
-            .collect();
-        for map in map_gradients(&soup, &moved) {
-            assert!((map.unwrap() - similar).norm() < 1e-10);
+        for soup in [crate::shapes::icosphere(1), crate::shapes::quad_sphere(3)] {
+            let moved = soup.positions.iter();
+            let moved: Vec<Point3> = moved
+                .map(|p| Point3::from(similar * p.coords) + Vector3::new(5.0, -1.0, 3.0))
+                .collect();
+            for map in map_gradients(&soup, &moved) {
+                assert!((map.unwrap() - similar).norm() < 1e-10);
+            }
         }
     }
 

@@ -356,7 +356,8 @@ mod tests {
         let draped = source.rest().map(|p| Point3::from(turned(p.coords)));
         let given: Vec<Vector3> = source.rest().iter().map(|p| p.coords * 0.1).collect();
         for (d, carried) in given.iter().zip(source.carry(&draped, &given)) {
-            assert!((turned(*d) - carried).norm() < 1e-9);
+            let off = (turned(*d) - carried).norm();
+            assert!(off < 1e-9, "{off}: {d:?} {carried:?}");
         }
     }
 

@@ -4,18 +4,21 @@ use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
 use super::SurfaceSample;
-use crate::{Point3, Rows, TriangleFans};
+use crate::{Point3, Rows, TriangleFans, VertexId};
 
 /// The patch of triangles that no place reaches.
 const NONE: u32 = u32::MAX;
 
 /// A surface divided into patches of triangles, one around each triangle with a place on it; places on one triangle share
-/// their patch. Patches are neighbours where they share an edge, so that parts which only touch or pass each other are far
-/// apart, however near in space.
+/// their patch. Patches are neighbours where they share a corner, so that parts which only pass each other are far apart,
+/// however near in space.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Patches {
     of_place: Vec<u32>,
-    neighbours: Rows<u32>,
+    /// The patches at each corner that more than one has.
+    at_corner: Rows<u32>,
+    /// Such corners of each patch.
+    corners: Rows<u32>,
     ends_openly: Vec<bool>,
 }
 
@@ -27,60 +30,27 @@ impl Patches {
         corners: impl Fn(u32) -> [Point3; 3],
         places: &[SurfaceSample],
     ) -> Self {
-        let n = fans.triangles().len();
-        let mut patch_at = vec![NONE; n];
-        let mut seeds: Vec<Point3> = Vec::new();
-        let mut queue = BinaryHeap::new();
-        let of_place = places.iter().map(|place| {
-            let row = place.location.row();
-            let patch = &mut patch_at[row as usize];
-            if *patch == NONE {
-                *patch = seeds.len() as u32;
-                seeds.push(place.point);
-                queue.push(Reverse((0, row, *patch)));
-            }
-            *patch
+        let mut growth = Growth::new(fans.triangles().len());
+        let of_place = places.iter().map(|place| growth.seed(place)).collect();
+        growth.fill(fans, corners);
+        let n_vertices = fans.triangles().iter().flatten();
+        let n_vertices = n_vertices.map(|v| v.index() + 1).max().unwrap_or(0);
+        let meeting = (0..n_vertices).map(|v| {
+            let around = fans.at_vertex(VertexId::new(v)).iter();
+            let mut patches: Vec<u32> = around.map(|&row| growth.patch_at[row as usize]).collect();
+            patches.sort_unstable();
+            patches.dedup();
+            patches.retain(|&patch| patch != NONE);
+            patches
         });
-        let of_place: Vec<u32> = of_place.collect();
-        let middle = |row: u32| {
-            let [a, b, c] = corners(row);
-            Point3::from((a.coords + b.coords + c.coords) / 3.0)
-        };
-        let mut ends_openly = vec![false; seeds.len()];
-        let mut pairs = Vec::new();
-        while let Some(Reverse((bits, row, patch))) = queue.pop() {
-            let is_seed = bits == 0 && patch_at[row as usize] == patch;
-            if patch_at[row as usize] != NONE && !is_seed {
-                continue;
-            }
-            patch_at[row as usize] = patch;
-            for edge in 0..3 {
-                let others = across(fans, row, edge);
-                let mut is_open = true;
-                for other in others {
-                    is_open = false;
-                    match patch_at[other as usize] {
-                        NONE => {
-                            // Distances are ≥ 0, and the bits of such numbers are ordered as the numbers are.
-                            let distance = (middle(other) - seeds[patch as usize]).norm();
-                            queue.push(Reverse((distance.to_bits(), other, patch)));
-                        }
-                        next if next != patch => {
-                            pairs.push((patch as usize, next));
-                            pairs.push((next as usize, patch));
-                        }
-                        _ => {}
-                    }
-                }
-                ends_openly[patch as usize] |= is_open;
-            }
-        }
-        pairs.sort_unstable();
-        pairs.dedup();
+        let at_corner: Vec<Vec<u32>> = meeting.filter(|patches| patches.len() > 1).collect();
+        let pairs = (0u32..).zip(&at_corner);
+        let pairs = pairs.flat_map(|(corner, all)| all.iter().map(move |&p| (p as usize, corner)));
         Self {
-            neighbours: Rows::from_pairs(seeds.len(), pairs.iter().copied()),
             of_place,
-            ends_openly,
+            corners: Rows::from_pairs(growth.seeds.len(), pairs),
+            at_corner: Rows::from_lists(at_corner),
+            ends_openly: growth.ends_openly,
         }
     }
 
@@ -89,20 +59,26 @@ impl Patches {
         self.of_place[place]
     }
 
-    /// The patches within `n_steps` steps over shared edges from `patch`, itself among them, ascending.
+    /// The patches within `n_steps` steps over shared corners from `patch`, itself among them, ascending.
     pub fn within(&self, patch: u32, n_steps: usize) -> Vec<u32> {
+        let mut is_found = vec![false; self.corners.len()];
+        let mut is_passed = vec![false; self.at_corner.len()];
+        is_found[patch as usize] = true;
         let mut found = vec![patch];
-        let mut edge = 0;
+        let mut done = 0;
         for _ in 0..n_steps {
             let end = found.len();
-            for k in edge..end {
-                for &next in &self.neighbours[found[k] as usize] {
-                    if !found.contains(&next) {
-                        found.push(next);
+            for k in done..end {
+                for &corner in &self.corners[found[k] as usize] {
+                    if !std::mem::replace(&mut is_passed[corner as usize], true) {
+                        let around = self.at_corner[corner as usize].iter().copied();
+                        found.extend(
+                            around.filter(|&p| !std::mem::replace(&mut is_found[p as usize], true)),
+                        );
                     }
                 }
             }
-            edge = end;
+            done = end;
         }
         found.sort_unstable();
         found
@@ -111,6 +87,66 @@ impl Patches {
     /// Whether an edge of a single triangle lies in `patch`: the surface may go on behind it, as behind a crack.
     pub fn ends_openly(&self, patch: u32) -> bool {
         self.ends_openly[patch as usize]
+    }
+}
+
+/// Patches as they grow.
+struct Growth {
+    patch_at: Vec<u32>,
+    seeds: Vec<Point3>,
+    ends_openly: Vec<bool>,
+    /// Triangles to be reached, the nearest first: distance as bits, row, patch.
+    queue: BinaryHeap<Reverse<(u64, u32, u32)>>,
+}
+
+impl Growth {
+    fn new(n_triangles: usize) -> Self {
+        Self {
+            patch_at: vec![NONE; n_triangles],
+            seeds: Vec::new(),
+            ends_openly: Vec::new(),
+            queue: BinaryHeap::new(),
+        }
+    }
+
+    /// The patch of a place: a new one where its triangle has none.
+    fn seed(&mut self, place: &SurfaceSample) -> u32 {
+        let row = place.location.row();
+        let patch = &mut self.patch_at[row as usize];
+        if *patch == NONE {
+            *patch = self.seeds.len() as u32;
+            self.seeds.push(place.point);
+            self.ends_openly.push(false);
+            self.queue.push(Reverse((0, row, *patch)));
+        }
+        *patch
+    }
+
+    /// Gives every triangle that edges lead to its patch, and tells which patches end openly.
+    fn fill(&mut self, fans: &TriangleFans, corners: impl Fn(u32) -> [Point3; 3]) {
+        let middle = |row: u32| {
+            let [a, b, c] = corners(row);
+            Point3::from((a.coords + b.coords + c.coords) / 3.0)
+        };
+        let mut is_done = vec![false; self.patch_at.len()];
+        while let Some(Reverse((_, row, patch))) = self.queue.pop() {
+            if std::mem::replace(&mut is_done[row as usize], true) {
+                continue;
+            }
+            self.patch_at[row as usize] = patch;
+            for edge in 0..3 {
+                let mut is_open = true;
+                for other in across(fans, row, edge) {
+                    is_open = false;
+                    if self.patch_at[other as usize] == NONE {
+                        // Distances are ≥ 0, and the bits of such numbers are ordered as the numbers are.
+                        let distance = (middle(other) - self.seeds[patch as usize]).norm();
+                        self.queue.push(Reverse((distance.to_bits(), other, patch)));
+                    }
+                }
+                self.ends_openly[patch as usize] |= is_open;
+            }
+        }
     }
 }
 
