@@ -26,6 +26,11 @@ python=$(command -v python3.11 || command -v python3)
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
+if ! "$python" -c 'import ensurepip' 2>/dev/null; then
+    as_root=$([ "$(id -u)" = 0 ] || echo sudo)
+    step $as_root apt-get update
+    step $as_root apt-get install -y --no-install-recommends python3-venv
+fi
 step "$python" -m venv "$work/env"
 env=$work/env/bin
 step "$env/pip" install --quiet --disable-pip-version-check "maturin>=1.9,<2"
