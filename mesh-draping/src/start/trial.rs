@@ -15,9 +15,9 @@ const N_SAMPLES: usize = 4000;
 const WORST: f64 = 0.01;
 /// What leaving out a whole shape costs, in the units of the distortion.
 const LEFT_OUT: f64 = 2.0;
-/// Another start is taken where it comes to less than this share of what the first comes to: among equals, the plain
-/// deformation by landmarks is known to keep proportions.
-const BETTER_START: f64 = 0.9;
+/// Another start is taken where it comes to less than this share of what the first comes to. Of 40 pairs of people and animals the
+/// led starts end nearer to the truth on all but one, even where they cost as much; creatures of other proportions do not.
+const BETTER_START: f64 = 0.95;
 /// A start whose Dirichlet energy comes to more than this above that of the first is not taken: it is nearer because it is
 /// stretched.
 const MORE_DISTORTED: f64 = 0.05;

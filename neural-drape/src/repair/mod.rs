@@ -17,10 +17,10 @@ const SWEEPS: usize = 40;
 const FLATTENINGS: usize = 30;
 /// A patch is left as it was if mending it would move a vertex farther than this share of the longest side.
 const MAX_MOTION: f64 = 0.05;
-/// A vertex of a mended patch goes back where it was, or as large a share of the way as breaks nothing ...
-const SHARES_BACK: [f64; 4] = [1.0, 0.5, 0.25, 0.125];
+/// A vertex of a mended patch goes back this share of the way to where it was, the largest that breaks nothing ...
+const SHARES_BACK: [f64; 3] = [0.8, 0.4, 0.2];
 /// ... so often.
-const BACK_SWEEPS: usize = 4;
+const BACK_SWEEPS: usize = 2;
 /// Edges that are only just folded, with cosines above this, are bent back ...
 const JUST_FOLDED: f64 = -0.65;
 /// ... in at most so many steps ...
