@@ -23,7 +23,7 @@ struct Piece {
 
 /// The gradient at each vertex of the map from the positions of `rest` to `moved`; none where nothing around it moved.
 ///
-/// `J = Σ w_f |A_f| F_f / Σ w_f |A_f|` over the triangles at the vertex (w = 1) and those within [`REACH`] r of it
+/// `J = Σ w_f |A_f| F_f / Σ w_f |A_f|` over the triangles at the vertex (w = 1) and those within 0.04 r of it
 /// (`w = (1 − d²/r²)²`, d the distance to the centre of the triangles in one cell of a grid), areas at rest. `F_f` takes two edges of the triangle at rest and
 /// their normal of length `√(2 |A_f|)` to those of the moved one (the fourth corner of Sumner and Popović 2004, Eq. 1),
 /// so that J is exact where the map turns, scales and shifts. Vertices that end at one place share theirs: the copies
