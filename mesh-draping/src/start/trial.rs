@@ -18,8 +18,6 @@ const LEFT_OUT: f64 = 2.0;
 /// Another start is taken where it comes to less than this share of what the first comes to: among equals, the plain
 /// deformation by landmarks is known to keep proportions.
 const BETTER_START: f64 = 0.9;
-/// The same for a start that is no more distorted than the first.
-const BETTER_UNDISTORTED: f64 = 0.909;
 /// A start whose Dirichlet energy comes to more than this above that of the first is not taken: it is nearer because it is
 /// stretched.
 const MORE_DISTORTED: f64 = 0.05;

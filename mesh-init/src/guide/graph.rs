@@ -12,7 +12,7 @@ const N_NEIGHBOURS: usize = 12;
 /// Candidates for them; those on the other side of a thin part are passed over.
 const N_CANDIDATES: usize = 24;
 /// Neighbours are at most this many patches apart along the surface.
-const N_PATCHES: usize = 3;
+const N_PATCHES: usize = 4;
 /// A neighbour lies at most this steeply over the tangent plane: sine of the angle.
 const STEEPEST: f64 = 0.75;
 
