@@ -87,12 +87,8 @@ impl Trial {
 
     /// Whether the start of this trial is to be taken in the place of the first, whose trial is `first`.
     pub(super) fn is_better_start_than(&self, first: &Self) -> bool {
-        let better = if self.distortion <= first.distortion {
-            BETTER_UNDISTORTED
-        } else {
-            BETTER_START
-        };
-        self.cost() < better * first.cost() && self.distortion <= first.distortion + MORE_DISTORTED
+        self.cost() < BETTER_START * first.cost()
+            && self.distortion <= first.distortion + MORE_DISTORTED
     }
 
     /// Clearly nearer, or as near and clearly less distorted; or the other left parts out and what it kept does not fit.
