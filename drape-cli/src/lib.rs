@@ -49,18 +49,6 @@ struct Cli {
 
 /// Runs the command line `args`, program name first. Exit codes: 0 done, 1 a requirement is not met, 2 failed.
 pub fn run(args: impl IntoIterator<Item = OsString>) -> ExitCode {
-    match Program::of_process() {
-        Ok(program) => run_as(program, args),
-        Err(error) => {
-            eprintln!("error: cannot find this program to run it again: {error}");
-            ExitCode::from(FAILED)
-        }
-    }
-}
-
-/// As [`run`], for a program that is not the running executable: a script of another language's package.
-pub fn run_as(program: Program, args: impl IntoIterator<Item = OsString>) -> ExitCode {
-    program.remember();
     let cli = match Cli::try_parse_from(args) {
         Ok(cli) => cli,
         Err(error) => return refuse(&error),
@@ -69,6 +57,12 @@ pub fn run_as(program: Program, args: impl IntoIterator<Item = OsString>) -> Exi
         eprintln!("error: {}", one_line(&format!("{error:#}")));
         ExitCode::from(FAILED)
     })
+}
+
+/// As [`run`], for a program that is not the running executable: a script of another language's package.
+pub fn run_as(program: Program, args: impl IntoIterator<Item = OsString>) -> ExitCode {
+    program.remember();
+    run(args)
 }
 
 impl Cli {

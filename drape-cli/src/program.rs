@@ -19,7 +19,7 @@ pub struct Program {
 
 impl Program {
     /// The running executable.
-    pub(crate) fn of_process() -> io::Result<Self> {
+    fn of_process() -> io::Result<Self> {
         let file = std::env::current_exe()?;
         Ok(Self {
             again: vec![file.clone().into_os_string()],

@@ -1,6 +1,5 @@
 //! Source and target as the studio holds them: what is draped, with what the page shows and picks on.
 
-use std::collections::BTreeSet;
 use std::path::Path;
 use std::sync::{Arc, OnceLock};
 
@@ -30,7 +29,7 @@ pub(crate) struct DisplayedPair {
     /// What is draped.
     pub(crate) shapes: Shapes,
     /// Pairs of triangles of the source that pass through each other at rest; found once asked for.
-    rest_crossings: Arc<OnceLock<BTreeSet<[usize; 2]>>>,
+    rest_crossings: Arc<OnceLock<Vec<[usize; 2]>>>,
 }
 
 /// A mesh to deform.
@@ -76,11 +75,11 @@ impl DisplayedPair {
     pub(crate) fn new_crossings(&self, x: &Positions) -> usize {
         let source = &self.shapes.source;
         let found = |x: &Positions| self_intersections(source.triangulation(), x);
-        let at_rest = self
-            .rest_crossings
-            .get_or_init(|| found(source.rest()).into_iter().collect());
+        // In order, as they are found.
+        let at_rest = self.rest_crossings.get_or_init(|| found(source.rest()));
         let now = found(x).into_iter();
-        now.filter(|pair| !at_rest.contains(pair)).count()
+        now.filter(|pair| at_rest.binary_search(pair).is_err())
+            .count()
     }
 }
 

@@ -6,8 +6,8 @@ use std::time::{Duration, Instant};
 
 use mesh_core::{Landmark, Positions};
 use mesh_metrics::{
-    dirichlet_unit_area, folded_edges, hausdorff_sampled, mean_angle_deviation, opposed_triangles,
-    q_transfer, skinny_triangles, Counterparts, EvaluationConfig, SurfaceDistances,
+    chamfer, dirichlet_unit_area, folded_edges, hausdorff_sampled, mean_angle_deviation,
+    opposed_triangles, q_transfer, skinny_triangles, Counterparts, EvaluationConfig,
     HAUSDORFF_WEIGHT, PAPER_TAU,
 };
 use serde::Serialize;
@@ -106,11 +106,11 @@ impl Figures {
             q: q_transfer(dirichlet - 1.0, HAUSDORFF_WEIGHT * hausdorff, PAPER_TAU),
             hausdorff,
             hausdorff_of_all: if counted.mesh_left_out + counted.target_left_out > 0.0 {
-                hausdorff_sampled(&SurfaceDistances::measure(t, x, target, &config))
+                counted.hausdorff_of_all
             } else {
                 hausdorff
             },
-            mean_distance: mean(&there.of_samples) + mean(&back.of_samples),
+            mean_distance: chamfer(there).mean_l2 + chamfer(back).mean_l2,
             source_left_out: counted.mesh_left_out,
             target_left_out: counted.target_left_out,
             dirichlet,
@@ -122,10 +122,6 @@ impl Figures {
             landmark_rms: landmark_rms(job),
         }
     }
-}
-
-fn mean(distances: &[f64]) -> f64 {
-    distances.iter().sum::<f64>() / distances.len().max(1) as f64
 }
 
 /// Root mean square of what the landmarks are off.

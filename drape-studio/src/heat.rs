@@ -70,10 +70,9 @@ fn distances(displayed: &DisplayedPair, shown: &ShownShape) -> Vec<f64> {
     let unit = 1.0 / common_frame(target).scale;
     let hits = target.closest_points(shown.positions.as_slice());
     let vertices = shown.positions.ids().zip(&hits);
+    let counterparts = shown.counterparts();
     let distance = |(v, hit): (VertexId, &SurfacePoint)| {
-        let provenance = shown.provenance.as_ref();
-        let has = provenance.is_none_or(|p| p.counterparts.has_vertex(v, hit, target));
-        if has {
+        if counterparts.has_vertex(v, hit, target) {
             hit.distance_squared.sqrt() * unit
         } else {
             -1.0

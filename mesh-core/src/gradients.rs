@@ -6,6 +6,7 @@ use nalgebra::Matrix3;
 use rayon::prelude::*;
 
 use crate::io::unit;
+use crate::triangulation::fan;
 use crate::{Point3, PolygonSoup, Vector3};
 
 /// Radius around a vertex in which triangles count, as a share of the root of the whole area at rest. Displacements are longer
@@ -177,13 +178,6 @@ fn piece(rest: &[Point3], moved: &[Point3], [a, b, c]: [u32; 3]) -> Option<Piece
             .iter()
             .any(|&v| rest[v] != moved[v]),
     })
-}
-
-/// The triangles from the first corner of a polygon.
-fn fan(face: &[u32]) -> impl Iterator<Item = [u32; 3]> + '_ {
-    face.windows(2)
-        .skip(1)
-        .map(|side| [face[0], side[0], side[1]])
 }
 
 #[cfg(test)]

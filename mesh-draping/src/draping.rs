@@ -119,13 +119,13 @@ impl Draping {
                 set_up(draped_pair, config, &initial, &first_regions)
             })
         })?;
-        let carried = |x: Positions| match &stand_in {
-            Some(stand_in) => stand_in.carry(&x),
-            None => x,
+        let (by_landmarks, initial) = match &stand_in {
+            Some(stand_in) => stand_in.carry_both(by_landmarks, initial),
+            None => (by_landmarks, initial),
         };
         let mut draping = Self {
-            by_landmarks: carried(by_landmarks),
-            initial: carried(initial),
+            by_landmarks,
+            initial,
             n_after: if stand_in.is_some() { N_REFINING } else { 0 },
             n_before: 0,
             pair,

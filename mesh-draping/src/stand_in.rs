@@ -115,4 +115,13 @@ impl StandIn {
     pub(crate) fn carry(&self, x: &Positions) -> Positions {
         self.proxy.carry(&self.rest, x)
     }
+
+    /// The same of two shapes, which may be one.
+    pub(crate) fn carry_both(&self, a: Positions, b: Positions) -> (Positions, Positions) {
+        let carried = self.carry(&a);
+        match a == b {
+            true => (carried.clone(), carried),
+            false => (carried, self.carry(&b)),
+        }
+    }
 }

@@ -3,7 +3,7 @@
 use mesh_core::{MeshPoint, Point3, Positions, Vector3};
 use nalgebra::{Matrix3, SymmetricEigen};
 
-use crate::landmarks::{source_symmetry, MirrorError, Plane, SYMMETRIC};
+use crate::landmarks::{symmetry_plane, MirrorError, Plane};
 use crate::Source;
 
 /// Which place of a symmetric source lies opposite each vertex.
@@ -15,16 +15,12 @@ impl Opposites {
     /// # Errors
     /// A source that is not symmetric across the middle of its box.
     pub(crate) fn of(source: &Source) -> Result<Self, MirrorError> {
-        let symmetry = source_symmetry(source);
-        let misfit = symmetry.misfit;
-        if misfit > SYMMETRIC {
-            return Err(MirrorError::NotSymmetric { misfit });
-        }
-        let images = source.rest().iter().map(|p| symmetry.plane.mirror(p));
-        let places = images.map(|image| source.closest_place(&image));
-        // A source has a triangle, so that each has one.
-        let places: Option<Vec<MeshPoint>> = places.collect();
-        Ok(Self(places.ok_or(MirrorError::NotSymmetric { misfit })?))
+        let plane = symmetry_plane(source)?;
+        let images: Vec<Point3> = source.rest().iter().map(|p| plane.mirror(p)).collect();
+        let hits = source.bvh().closest_points(&images);
+        // What a hierarchy of triangles finds lies on one of them.
+        let places = hits.iter().filter_map(|hit| source.place(hit.location));
+        Ok(Self(places.collect()))
     }
 
     /// The mean of a shape and of its mirror image, vertex by vertex: `x' = (x + mirror(o)) / 2` with the place o opposite x,

@@ -31,6 +31,8 @@ pub struct CountedDistances {
     pub mesh_left_out: f64,
     /// The share of the target's places that were left out, 0..=1.
     pub target_left_out: f64,
+    /// The largest distance over everything, left out or not: [`crate::hausdorff_sampled`] of all.
+    pub hausdorff_of_all: f64,
 }
 
 /// A place with its distance, and whether it has a counterpart.
@@ -82,17 +84,27 @@ impl Counterparts {
             TargetKind::Cloud => (target.vertices(), Vec::new()),
         };
         let target_samples = case.to_draped(&points);
+        let mesh_vertices = case.to_target_of_vertices();
+        let target_vertices = case.to_draped(&corners);
+        let all = [
+            &mesh_samples,
+            &mesh_vertices,
+            &target_samples,
+            &target_vertices,
+        ];
+        let lengths = all.into_iter().flatten().map(|(length, _)| *length);
         CountedDistances {
             mesh_left_out: left_out(&mesh_samples),
             target_left_out: left_out(&target_samples),
+            hausdorff_of_all: lengths.fold(0.0, f64::max),
             distances: SurfaceDistances {
                 to_target: DirectedDistances {
                     of_samples: counted(&mesh_samples),
-                    of_vertices: counted(&case.to_target_of_vertices()),
+                    of_vertices: counted(&mesh_vertices),
                 },
                 to_draped: DirectedDistances {
                     of_samples: counted(&target_samples),
-                    of_vertices: counted(&case.to_draped(&corners)),
+                    of_vertices: counted(&target_vertices),
                 },
             },
         }
@@ -220,6 +232,10 @@ mod tests {
         };
         let counted = partial.distances(&t, &x, &target, &CONFIG);
         assert!(hausdorff_sampled(&counted.distances) < 1e-9);
+        assert_eq!(
+            counted.hausdorff_of_all,
+            hausdorff_sampled(&whole.distances)
+        );
         // One sample per equal share of the area: the half is met to within a row of them.
         assert!((counted.mesh_left_out - 0.5).abs() < 0.02);
         assert_eq!(counted.target_left_out, 0.0);

@@ -84,8 +84,7 @@ def write(folder: Path, plan: str = "quadruped", seed: int = 0, **dial: Any) -> 
 
     ``dial``: as for :func:`pair`.
     """
-    defaults = {"angle": 60.0, "ratio": 1.75, "landmarks": 16, "variant": "mesh"}
-    made = _made(plan, seed, **{**defaults, **dial})
+    made = _made(plan, seed, **dial)
     folder = _Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "source.obj").write_text(made.source_obj())
@@ -115,7 +114,12 @@ def run(
 
 
 def _made(
-    plan: str, seed: int, angle: float, ratio: float, landmarks: int, variant: str
+    plan: str,
+    seed: int,
+    angle: float = 60.0,
+    ratio: float = 1.75,
+    landmarks: int = 16,
+    variant: str = "mesh",
 ) -> _native.Creature:
     return _native.Creature(
         plan, seed=seed, angle=angle, ratio=ratio, landmarks=landmarks, variant=variant

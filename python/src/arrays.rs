@@ -69,15 +69,12 @@ pub(crate) fn of_points<'py, 'p>(
 }
 
 /// Polygons as two arrays: corners, one face after the other, and how many each has.
-pub(crate) fn of_faces<'py>(
-    py: Python<'py>,
-    faces: impl Iterator<Item = Vec<i64>>,
-) -> (Bound<'py, PyArray1<i64>>, Bound<'py, PyArray1<i64>>) {
-    let (mut corners, mut counts) = (Vec::new(), Vec::new());
-    for face in faces {
-        counts.push(face.len() as i64);
-        corners.extend(face);
-    }
+pub(crate) type Polygons<'py> = (Bound<'py, PyArray1<i64>>, Bound<'py, PyArray1<i64>>);
+
+/// Faces as polygons.
+pub(crate) fn of_faces<'py>(py: Python<'py>, faces: &[Vec<u32>]) -> Polygons<'py> {
+    let corners: Vec<i64> = faces.iter().flatten().map(|&v| v.into()).collect();
+    let counts: Vec<i64> = faces.iter().map(|face| face.len() as i64).collect();
     (
         PyArray1::from_vec(py, corners),
         PyArray1::from_vec(py, counts),

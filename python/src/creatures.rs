@@ -1,14 +1,11 @@
 //! Creatures built in code, whose truth is known.
 
 use mesh_creatures::{CreaturePair, Dial, Individual, PairConfig, Plan, Variant};
-use numpy::{PyArray1, PyArray2};
+use numpy::PyArray2;
 use pyo3::prelude::*;
 
-use crate::arrays;
+use crate::arrays::{self, Polygons};
 use crate::error::Error;
-
-/// Two arrays: corners, one face after the other, and how many each face has.
-type Polygons<'py> = (Bound<'py, PyArray1<i64>>, Bound<'py, PyArray1<i64>>);
 
 /// A source, a target in other triangles, and where each vertex of the source truly belongs.
 #[pyclass(frozen, module = "mesh_draping")]
@@ -28,8 +25,6 @@ impl Creature {
         landmarks: usize,
         variant: &str,
     ) -> PyResult<Self> {
-        let wrong =
-            |what: &str, error: &dyn std::fmt::Display| Error::new_err(format!("{what}: {error}"));
         let plan = plan.parse().map_err(|error| wrong(plan, &error))?;
         let variant: Variant = variant.parse().map_err(|error| wrong(variant, &error))?;
         check_dial(angle, ratio)?;
@@ -86,7 +81,7 @@ impl Creature {
     /// The source's polygons.
     #[getter]
     fn source_polygons<'py>(&self, py: Python<'py>) -> Polygons<'py> {
-        polygons(py, &self.0.source.soup.faces)
+        arrays::of_faces(py, &self.0.source.soup.faces)
     }
 
     /// The source as an OBJ file, with UVs and groups.
@@ -103,7 +98,7 @@ impl Creature {
     /// The target's polygons; none for a cloud.
     #[getter]
     fn target_polygons<'py>(&self, py: Python<'py>) -> Polygons<'py> {
-        polygons(py, &self.0.target.faces)
+        arrays::of_faces(py, &self.0.target.faces)
     }
 
     /// The target as a PLY file.
@@ -135,9 +130,4 @@ fn check_dial(angle: f64, ratio: f64) -> PyResult<()> {
         return Err(wrong("ratio", &"use 1 to 3"));
     }
     Ok(())
-}
-
-fn polygons<'py>(py: Python<'py>, faces: &[Vec<u32>]) -> Polygons<'py> {
-    let rows = |face: &Vec<u32>| face.iter().map(|&v| v.into()).collect();
-    arrays::of_faces(py, faces.iter().map(rows))
 }

@@ -5,14 +5,11 @@ use std::path::PathBuf;
 use mesh_draping::mesh_core::io::Morphs;
 use mesh_draping::parts::PartProblem;
 use mesh_draping::Seams;
-use numpy::{PyArray1, PyArray2, PyReadonlyArray1};
+use numpy::{PyArray2, PyReadonlyArray1};
 use pyo3::prelude::*;
 
-use crate::arrays::{self, Rows};
+use crate::arrays::{self, Polygons, Rows};
 use crate::error::{told, waited, Error};
-
-/// Two arrays: corners, one face after the other, and how many each face has.
-type Polygons<'py> = (Bound<'py, PyArray1<i64>>, Bound<'py, PyArray1<i64>>);
 
 /// The mesh to deform.
 #[pyclass(frozen, module = "mesh_draping")]
@@ -90,16 +87,7 @@ impl Source {
     /// The polygons: corners, one face after the other, and how many each has.
     #[getter]
     fn polygons<'py>(&self, py: Python<'py>) -> Polygons<'py> {
-        let mesh = self.0.mesh();
-        let row = |v: &mesh_draping::mesh_core::VertexId| self.0.file_row(*v) as i64;
-        let face = |f| mesh.face_vertices(f).iter().map(row).collect();
-        match self.0.file() {
-            Some(file) => {
-                let faces = file.soup().faces.iter();
-                arrays::of_faces(py, faces.map(|f| f.iter().map(|&v| v.into()).collect()))
-            }
-            None => arrays::of_faces(py, mesh.faces().map(face)),
-        }
+        arrays::of_faces(py, &self.0.soup().faces)
     }
 
     /// Writes the source with its vertices elsewhere.

@@ -70,6 +70,7 @@ fn read(app: &App, snapshot: &Snapshot, asked: &Asked<'_>) -> Result<Opened> {
         "next" => {
             let next = snapshot.session.queue.first();
             let record = next.context("no target waits")?.clone();
+            record.check()?;
             read_target(&record.path, record.clone())
         }
         "aside" => {
@@ -122,7 +123,6 @@ fn read_file(app: &App, asked: &Asked<'_>) -> Result<Opened> {
 }
 
 fn read_target(path: &std::path::Path, record: InputRecord) -> Result<Opened> {
-    record.check()?;
     let target = DisplayedTarget::read(path)?;
     Ok(Opened::Target(Arc::new(target), record))
 }

@@ -187,19 +187,10 @@ mod tests {
     #[test]
     fn parts_that_only_touch_are_no_neighbours() {
         let mut soup = shapes::open_grid(20, 20);
-        let n = soup.positions.len() as u32;
-        let above: Vec<Point3> = soup
-            .positions
-            .iter()
-            .map(|p| p + Vector3::z() * 1e-3)
-            .collect();
-        let faces: Vec<Vec<u32>> = soup
-            .faces
-            .iter()
-            .map(|f| f.iter().map(|v| v + n).collect())
-            .collect();
-        soup.positions.extend(above);
-        soup.faces.extend(faces);
+        let mut above = soup.clone();
+        let lift = Vector3::z() * 1e-3;
+        above.positions.iter_mut().for_each(|p| *p += lift);
+        soup.append(above);
         let (places, patches) = patches(&TriangleSoup::new(soup).unwrap());
         let is_above = |p: usize| places[p].point.z > 5e-4;
         let all = patches.within(patches.of_place(0), 100);

@@ -8,7 +8,7 @@ use super::Label;
 use crate::{Pair, Similarity, Source, Target};
 
 /// A source whose mirror image is farther from it, on the mean and in longest sides of its box, is not symmetric.
-pub(crate) const SYMMETRIC: f64 = 0.01;
+const SYMMETRIC: f64 = 0.01;
 /// Places nearer to each other than this share of the longest side are one.
 const SAME: f64 = 0.01;
 /// Places that spread less across their line than this share of the spread along it, squared, span no plane.
@@ -91,6 +91,18 @@ impl Plane {
     }
 }
 
+/// The plane across which a source is symmetric.
+///
+/// # Errors
+/// A source that is not symmetric across the middle of its box.
+pub(crate) fn symmetry_plane(source: &Source) -> Result<Plane, MirrorError> {
+    let Symmetry { plane, misfit, .. } = source_symmetry(source);
+    if misfit > SYMMETRIC {
+        return Err(MirrorError::NotSymmetric { misfit });
+    }
+    Ok(plane)
+}
+
 /// The landmarks that `pair` lacks on the other side, and the plane of the source.
 ///
 /// Mirrored places are moved to the nearest place of the target's surface. Landmarks on the plane, or whose counterpart
@@ -103,10 +115,7 @@ pub fn mirror(pair: &Pair) -> Result<Mirrored, MirrorError> {
         return Err(MirrorError::TooFew);
     }
     let rest = pair.source.rest();
-    let Symmetry { plane, misfit, .. } = source_symmetry(&pair.source);
-    if misfit > SYMMETRIC {
-        return Err(MirrorError::NotSymmetric { misfit });
-    }
+    let plane = symmetry_plane(&pair.source)?;
     let side = pair.source.bounds().longest_side();
     let planes = MirrorPlanes {
         target: target_plane(pair, &plane, SAME * side),

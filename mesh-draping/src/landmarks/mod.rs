@@ -36,7 +36,7 @@ pub use wrap::{read_wrap, write_wrap, WrapPoints};
 pub use write::{write, Form, WrittenLandmarks};
 
 pub(crate) use doctor::examine;
-pub(crate) use mirror::SYMMETRIC;
+pub(crate) use mirror::symmetry_plane;
 
 use std::fs;
 use std::path::Path;

@@ -12,7 +12,7 @@ const N_NEIGHBOURS: usize = 12;
 /// Candidates for them; those on the other side of a thin part are passed over.
 const N_CANDIDATES: usize = 24;
 /// Neighbours are at most this many patches apart along the surface.
-const N_PATCHES: usize = 4;
+const N_PATCHES: usize = 6;
 /// A neighbour lies at most this steeply over the tangent plane: sine of the angle.
 const STEEPEST: f64 = 0.75;
 
@@ -166,19 +166,10 @@ mod tests {
     #[test]
     fn no_path_leads_from_one_part_to_another_that_it_runs_through() {
         let mut soup = shapes::icosphere(4);
-        let n = soup.positions.len() as u32;
-        let moved: Vec<Point3> = soup
-            .positions
-            .iter()
-            .map(|p| p + Vector3::x() * 1.5)
-            .collect();
-        let faces: Vec<Vec<u32>> = soup
-            .faces
-            .iter()
-            .map(|f| f.iter().map(|v| v + n).collect())
-            .collect();
-        soup.positions.extend(moved);
-        soup.faces.extend(faces);
+        let mut beside = soup.clone();
+        let aside = Vector3::x() * 1.5;
+        beside.positions.iter_mut().for_each(|p| *p += aside);
+        soup.append(beside);
         let graph = SampleGraph::new(&TriangleSoup::new(soup).unwrap(), 2000);
         let reached = graph.distances(&Point3::new(-1.0, 0.0, 0.0));
         for (p, d) in graph.points.iter().zip(reached) {
@@ -208,19 +199,11 @@ mod tests {
     #[test]
     fn no_path_leads_through_a_gap() {
         let mut soup = shapes::open_grid(20, 20);
-        let n = soup.positions.len();
-        let above: Vec<Point3> = soup
-            .positions
-            .iter()
-            .map(|p| p + Vector3::z() * 0.02)
-            .collect();
-        let faces: Vec<Vec<u32>> = soup
-            .faces
-            .iter()
-            .map(|f| f.iter().rev().map(|v| v + n as u32).collect())
-            .collect();
-        soup.positions.extend(above);
-        soup.faces.extend(faces);
+        let mut above = soup.clone();
+        let lift = Vector3::z() * 0.02;
+        above.positions.iter_mut().for_each(|p| *p += lift);
+        above.faces.iter_mut().for_each(|face| face.reverse());
+        soup.append(above);
         let graph = SampleGraph::new(&TriangleSoup::new(soup).unwrap(), 2000);
         let start = graph.points[0];
         let is_same = |p: &Point3| (p.z > 0.01) == (start.z > 0.01);

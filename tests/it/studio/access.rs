@@ -5,7 +5,7 @@ use std::path::Path;
 use serde_json::json;
 
 use super::browser::{browser, Page};
-use super::server::Server;
+use super::server::{Server, SHORT};
 use crate::data::skip;
 use crate::support::Workplace;
 
@@ -72,15 +72,7 @@ fn a_checker_finds_nothing_serious() {
         return;
     };
     let place = Workplace::new();
-    let arguments = [
-        "source.obj",
-        "target.ply",
-        "--landmarks",
-        "landmarks.json",
-        "--config",
-        "short.toml",
-    ];
-    let server = Server::start(&place.path(""), &arguments);
+    let server = Server::start(&place.path(""), &SHORT);
     let page = Page::open(&browser, &server.url, [1280, 800]);
     page.wait("studio.views.result.shape && studio.figures && studio.state.can.drape");
     page.press("#drape");

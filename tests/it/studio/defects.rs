@@ -5,7 +5,7 @@ use std::path::Path;
 use serde_json::{json, Value};
 
 use super::browser::{browser, Page};
-use super::page::{middle, pixel, probed};
+use super::page::{lose_graphics, middle, pixel, probed};
 use super::server::Server;
 use super::wire::Wire;
 use crate::support::Workplace;
@@ -30,11 +30,7 @@ fn the_page_comes_back_after_graphics_reload_and_restart() {
     };
     // The graphics card forgets everything.
     let shown = pixel(&page, "source");
-    page.value("(globalThis.lose = studio.painter.renderer.gl.getExtension('WEBGL_lose_context')).loseContext(), true");
-    page.wait("studio.painter.renderer.gl.isContextLost()");
-    page.value("lose.restoreContext(), true");
-    page.wait("!studio.painter.renderer.gl.isContextLost()");
-    probed(&page);
+    lose_graphics(&page);
     assert_eq!(pixel(&page, "source"), shown);
 
     // The page is loaded again: cameras and colours are as they were.

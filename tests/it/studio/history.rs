@@ -7,18 +7,9 @@ use serde_json::{json, Value};
 
 use super::browser::{browser, wait_for, Page};
 use super::page::middle;
-use super::server::Server;
+use super::server::{Server, SHORT};
 use super::wire::{download, Wire};
 use crate::support::Workplace;
-
-const SHORT: [&str; 6] = [
-    "source.obj",
-    "target.ply",
-    "--landmarks",
-    "landmarks.json",
-    "--config",
-    "short.toml",
-];
 
 /// Another scan: a ball of another shape at another place.
 fn other_scan(place: &Workplace) {

@@ -6,7 +6,7 @@ use std::fs;
 use serde_json::json;
 
 use super::browser::{browser, Page};
-use super::page::{middle, pixel, probed};
+use super::page::{lose_graphics, middle, pixel, probed};
 use super::server::Server;
 use crate::support::Workplace;
 
@@ -94,11 +94,7 @@ fn a_textured_creature_is_marked_from_its_texture() {
     page.key("v", 86, 0);
     page.wait("studio.preferences.look === 'scan'");
     // The graphics card forgets the pictures, too.
-    page.value("(globalThis.lose = studio.painter.renderer.gl.getExtension('WEBGL_lose_context')).loseContext(), true");
-    page.wait("studio.painter.renderer.gl.isContextLost()");
-    page.value("lose.restoreContext(), true");
-    page.wait("!studio.painter.renderer.gl.isContextLost()");
-    probed(&page);
+    lose_graphics(&page);
     assert!(
         is_mostly(&page, "source", 0),
         "{:?}",

@@ -122,3 +122,12 @@ pub(crate) fn pixel(page: &Page, side: &str) -> [u64; 3] {
     ));
     [0, 1, 2].map(|k| read[k].as_u64().unwrap_or_default())
 }
+
+/// Lets the graphics card forget everything, and waits until the page has drawn itself anew.
+pub(crate) fn lose_graphics(page: &Page) {
+    page.value("(globalThis.lose = studio.painter.renderer.gl.getExtension('WEBGL_lose_context')).loseContext(), true");
+    page.wait("studio.painter.renderer.gl.isContextLost()");
+    page.value("lose.restoreContext(), true");
+    page.wait("!studio.painter.renderer.gl.isContextLost()");
+    probed(page);
+}

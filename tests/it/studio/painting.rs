@@ -6,18 +6,9 @@ use serde_json::{json, Value};
 
 use super::browser::{browser, Page};
 use super::page::middle;
-use super::server::Server;
+use super::server::{Server, SHORT};
 use super::wire::{download, Wire};
 use crate::support::Workplace;
-
-const SHORT: [&str; 6] = [
-    "source.obj",
-    "target.ply",
-    "--landmarks",
-    "landmarks.json",
-    "--config",
-    "short.toml",
-];
 
 /// A dab on the front of the source.
 fn dab(x: f64, done: bool) -> Value {

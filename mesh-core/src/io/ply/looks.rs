@@ -3,6 +3,7 @@
 use super::body::Body;
 use super::header::{Element, Kind, Property};
 use super::PlyFile;
+use crate::io::document::Document as _;
 use crate::io::fault::Fault;
 use crate::io::uvs::CornerUvs;
 use crate::PolygonSoup;
@@ -15,9 +16,7 @@ const PICTURE: &str = "comment TextureFile ";
 impl PlyFile {
     /// The name of the picture, if a comment tells one.
     pub(super) fn picture(&self) -> Option<String> {
-        let end = b"end_header";
-        let head = self.bytes.windows(end.len()).position(|w| w == end)?;
-        let text = String::from_utf8_lossy(&self.bytes[..head]);
+        let text = String::from_utf8_lossy(&self.bytes[..self.header.body]);
         let mut lines = text.lines();
         let name = lines.find_map(|line| line.trim().strip_prefix(PICTURE).map(str::to_owned))?;
         Some(name.trim().to_owned())
@@ -29,16 +28,11 @@ impl PlyFile {
         let of_corners = of_corners.filter(|uvs| uvs.faces.len() == soup.faces.len());
         of_corners.or_else(|| {
             let rows = UV_NAMES.iter().find_map(|[u, v]| {
-                let (u, v) = (self.scalars(u)?, self.scalars(v)?);
+                let (u, v) = (self.vertex_scalars(u)?, self.vertex_scalars(v)?);
                 Some(u.into_iter().zip(v).map(|(u, v)| [u, v]).collect())
             })?;
             Some(CornerUvs::of_vertices(rows, soup))
         })
-    }
-
-    fn scalars(&self, name: &str) -> Option<Vec<f64>> {
-        let values = super::scalars::vertex_scalars(&self.bytes, &self.header, name);
-        values.ok().flatten()
     }
 
     /// The list `texcoord` of the faces: u and v of each corner.
