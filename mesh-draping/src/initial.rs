@@ -8,12 +8,14 @@ use crate::{Error, Note, Pair};
 
 /// How the source is brought to its landmarks before it is draped.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
+#[serde(rename_all = "kebab-case")]
 pub enum InitialMethod {
     /// The best of several starts: that of [`Self::Standard`], and two that are led by distances along the surfaces
     /// ([`mesh_init::Guide`]). Each is tried on a coarse stand-in before the drape begins; to [`initial_deformation`],
     /// which drapes nothing, the same as [`Self::Standard`].
     Tried,
+    /// The same, but no network leads where all of them are poor: what it gives is measured against this.
+    TriedByVertices,
     /// Affine, then rotations and scales spread from the landmarks: least distortion ([`InitConfig::standard`]).
     Standard,
     /// The paper's: affine, then a biharmonic field ([`InitConfig::paper`]).
@@ -26,7 +28,7 @@ impl InitialMethod {
     /// How landmarks spread; none where the affine map is all.
     pub fn config(self) -> Option<InitConfig> {
         match self {
-            Self::Tried | Self::Standard => Some(InitConfig::standard()),
+            Self::Tried | Self::TriedByVertices | Self::Standard => Some(InitConfig::standard()),
             Self::Paper => Some(InitConfig::paper()),
             Self::Affine => None,
         }

@@ -85,7 +85,8 @@ impl Preset {
         PRESETS.iter().map(|(name, _)| *name)
     }
 
-    /// The paper's studies, which change one thing each: presets, too ([`DrapeConfig::studies`], and another start).
+    /// The paper's studies, which change one thing each, and the default without the network that leads: presets, too
+    /// ([`DrapeConfig::studies`], and another start).
     pub fn studies() -> Vec<Self> {
         let studies = DrapeConfig::studies().into_iter();
         let mut presets: Vec<Self> = studies
@@ -99,7 +100,21 @@ impl Preset {
             initial,
             ..Self::of_drape(name, DrapeConfig::study())
         }));
+        presets.push(Self::by_vertices("study-vertices", 1.0));
+        presets.push(Self::by_vertices("study-vertices-longer", 1.5));
         presets
+    }
+
+    /// The default without the network that leads, with `times` the iterations.
+    fn by_vertices(name: &str, times: f64) -> Self {
+        let mut drape = DrapeConfig::standard();
+        for stage in &mut drape.stages {
+            stage.n_iterations = (stage.n_iterations as f64 * times) as usize;
+        }
+        Self {
+            initial: InitialMethod::TriedByVertices,
+            ..Self::of_drape(name, drape)
+        }
     }
 
     /// The preset or study of this name.

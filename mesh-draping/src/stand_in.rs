@@ -31,7 +31,7 @@ impl StandIn {
             && moves_vertices
             && matches!(
                 preset.initial,
-                InitialMethod::Tried | InitialMethod::Standard
+                InitialMethod::Tried | InitialMethod::TriedByVertices | InitialMethod::Standard
             )
     }
 

@@ -32,7 +32,8 @@ pub(crate) struct Start {
 }
 
 impl Start {
-    /// The start that the settings name; for [`InitialMethod::Tried`] the best of several.
+    /// The start that the settings name; for [`InitialMethod::Tried`] and
+    /// [`InitialMethod::TriedByVertices`] the best of several.
     ///
     /// # Errors
     /// As [`initial_deformation`].
@@ -43,7 +44,11 @@ impl Start {
             shape,
             drape: preset.drape.clone(),
         };
-        if preset.initial == InitialMethod::Tried {
+        let is_tried = matches!(
+            preset.initial,
+            InitialMethod::Tried | InitialMethod::TriedByVertices
+        );
+        if is_tried {
             // What cannot be tried is passed over: the first start needs no trial.
             let _ = start.improve(pair, preset, regions);
         }
@@ -100,7 +105,9 @@ impl Start {
         let chosen = &better.min_by(cheapest).unwrap_or(&own).trial;
         let best = led.iter().chain([&own]).min_by(cheapest).unwrap_or(&own);
         // Without landmarks a smooth map drifts, and a rigid body is none to it.
-        let can_lead = pair.landmarks.len() >= ENOUGH_TO_STAND && regions.is_none();
+        let can_lead = preset.initial == InitialMethod::Tried
+            && pair.landmarks.len() >= ENOUGH_TO_STAND
+            && regions.is_none();
         let guided = (can_lead && cost(&best) > POOR)
             .then(|| Trial::guided(&stand_in.pair, preset, &regions, &best.start));
         let guided = guided.and_then(Result::ok);
