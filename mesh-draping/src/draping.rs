@@ -268,9 +268,11 @@ impl Draping {
         }
     }
 
-    /// The network that moves the vertices; none where there is none, or where it alone does not.
+    /// The network that moves the vertices; none where there is none, or where it alone does not, as where the result is made
+    /// symmetric.
     pub fn network(&self) -> Option<NetworkMap> {
-        self.drape.network()
+        let is_alone = self.opposites.is_none();
+        is_alone.then(|| self.drape.network()).flatten()
     }
 
     /// Goes on with other landmarks: they deform the present shape, and the run gets more iterations if few are left.

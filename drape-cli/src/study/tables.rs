@@ -101,7 +101,7 @@ pub(super) fn table_1(rows: &[Row]) -> String {
 /// A row for each stand of the dial: means over its creatures.
 pub(super) fn dial(stands: &[Vec<Case>], rows: &[Row]) -> String {
     let mut text = String::from(
-        "\n| turn of joints | ratio of lengths | landmarks | Q | lowest Q | truth e-2 | initial e-2 | gain | lowest gain |\
+        "\n| turn of joints | ratio of lengths | landmarks | Q | lowest Q | truth e-2 | initial e-2 | gain | lowest gain | \
          new folds | new skinny | new crossings | CPU-s |\n|---|---|---|---|---|---|---|---|---|---|---|---|---|\n",
     );
     for cases in stands {

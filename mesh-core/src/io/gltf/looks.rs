@@ -5,6 +5,7 @@ use std::collections::HashMap;
 use base64::engine::general_purpose::STANDARD;
 use base64::Engine as _;
 
+use super::container::percent_decoded;
 use super::file::GltfFile;
 use super::json::document;
 use crate::io::contents::NamedFaces;
@@ -82,7 +83,7 @@ impl GltfFile {
 /// A file, or what stands in the text itself.
 fn of_uri(uri: String) -> Option<PictureAt> {
     match uri.strip_prefix("data:") {
-        None => Some(PictureAt::File(uri.replace("%20", " "))),
+        None => Some(PictureAt::File(percent_decoded(&uri))),
         Some(data) => {
             let (_, text) = data.split_once("base64,")?;
             Some(PictureAt::Bytes(STANDARD.decode(text.trim()).ok()?))
