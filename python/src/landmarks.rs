@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use mesh_draping::landmarks::{self, leave_one_out_residuals, Finding, Form, WrapPoints};
-use mesh_draping::mesh_core::Landmark;
+use mesh_draping::mesh_core::{Curve, Landmark};
 use mesh_draping::Pair;
 use pyo3::prelude::*;
 use serde_json::json;
@@ -59,8 +59,9 @@ impl Landmarks {
         Ok(Self(parsed.map_err(told)?))
     }
 
+    /// How many landmarks and curves there are.
     fn __len__(&self) -> usize {
-        self.0.len()
+        Landmark::marked(&self.0).count() + Curve::runs(&self.0).count()
     }
 
     /// The text of a landmark file, and how far the farthest place had to move to a vertex.

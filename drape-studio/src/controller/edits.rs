@@ -1,7 +1,8 @@
 //! Edits of landmarks and settings.
 
 use anyhow::{ensure, Context as _, Result};
-use mesh_core::Landmark;
+use mesh_core::{Curve, Landmark};
+use mesh_draping::landmarks::MAX_WEIGHT;
 use mesh_draping::Preset;
 use serde_json::Value;
 
@@ -33,6 +34,11 @@ impl Controller {
             Edit::Rename { landmark, name } => {
                 let name: String = name.trim().chars().take(MAX_NAME).collect();
                 self.change_mark(landmark, |m| m.name = name)?;
+            }
+            Edit::Weight { landmark, weight } => {
+                let is_weight = (0.0..=MAX_WEIGHT).contains(&weight);
+                ensure!(is_weight, "a weight is a number from 0 to {MAX_WEIGHT}");
+                self.change_mark(landmark, |m| m.weight = weight)?;
             }
             Edit::Kind { landmark, kind } => self.change_mark(landmark, |m| m.kind = kind)?,
             Edit::Paint(dab) => return self.paint(&dab),
@@ -159,14 +165,17 @@ impl Controller {
     /// Takes the landmarks of a file.
     pub(super) fn adopt(&mut self, landmarks: &[Landmark]) -> Result<()> {
         ensure!(
-            landmarks.len() <= MAX_MARKS,
+            Landmark::marked(landmarks).count() + Curve::runs(landmarks).count() <= MAX_MARKS,
             "{MAX_MARKS} landmarks are enough"
         );
         self.finish_drag();
-        let marks: Vec<Mark> = landmarks
-            .iter()
+        let points = Landmark::marked(landmarks);
+        let mut marks: Vec<Mark> = points
             .map(|l| Mark::of(self.session.fresh_id(), l))
             .collect();
+        for (curve, _) in Curve::runs(landmarks) {
+            marks.push(Mark::of_curve(self.session.fresh_id(), curve));
+        }
         self.session.edit(|d| d.marks = marks);
         self.edited();
         Ok(())

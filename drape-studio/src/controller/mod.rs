@@ -331,7 +331,10 @@ impl Controller {
     }
 
     fn landmarks(&self) -> Vec<Landmark> {
-        crate::session::landmarks(&self.session.document.marks)
+        let source = self.source.as_ref();
+        source.map_or_else(Vec::new, |source| {
+            crate::session::landmarks(&self.session.document.marks, &source.source)
+        })
     }
 
     fn snapshot(&self) -> Snapshot {

@@ -101,6 +101,11 @@ pub(crate) enum Edit {
         landmark: u32,
         kind: MarkKind,
     },
+    /// What a landmark or a curve counts.
+    Weight {
+        landmark: u32,
+        weight: f64,
+    },
     /// Paints weights of attraction on the source; one edit from the first dab to the one that is `done`.
     Paint(Dab),
     /// Forgets the weights.

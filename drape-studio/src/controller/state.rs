@@ -99,6 +99,7 @@ impl Controller {
             "name": mark.name,
             "source": mark.source,
             "target": place,
+            "weight": mark.weight,
             "kind": match mark.kind { MarkKind::Soft => "soft", MarkKind::Rigid => "rigid" },
         })
     }
