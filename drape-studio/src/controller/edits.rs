@@ -21,6 +21,12 @@ impl Controller {
         }
         match edit {
             Edit::Place { shape, ray } => return self.place(shape, &ray),
+            Edit::Draw { shape, ray } => return self.draw(shape, &ray),
+            Edit::EndCurve => return self.end_curve(),
+            Edit::CancelCurve => {
+                self.cancel_curve();
+                return Ok(Value::Null);
+            }
             Edit::Drag {
                 landmark,
                 shape,

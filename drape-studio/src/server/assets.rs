@@ -47,6 +47,12 @@ const FILES: [(&str, &str, &str); 30] = [
         include_str!("../../assets/colours.js"),
     ),
     ("brush.js", SCRIPT, include_str!("../../assets/brush.js")),
+    (
+        "weights.js",
+        SCRIPT,
+        include_str!("../../assets/weights.js"),
+    ),
+    ("curves.js", SCRIPT, include_str!("../../assets/curves.js")),
     ("cursor.js", SCRIPT, include_str!("../../assets/cursor.js")),
     ("files.js", SCRIPT, include_str!("../../assets/files.js")),
     ("paint.js", SCRIPT, include_str!("../../assets/paint.js")),

@@ -30,11 +30,18 @@ pub(crate) struct Mark {
 }
 
 /// The two lines of a curve.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Lines {
     pub(crate) source: Vec<SourcePlace>,
     pub(crate) target: Vec<[f64; 3]>,
+}
+
+impl Lines {
+    /// Whether the line on the source ends where it began.
+    pub(crate) fn is_closed(&self) -> bool {
+        self.source.len() > 1 && self.source.first() == self.source.last()
+    }
 }
 
 fn one() -> f64 {

@@ -8,7 +8,7 @@ mod mark;
 pub(crate) use file::{fnv1a, read, InputRecord};
 pub(crate) use kept::{Kept, NamedSettings};
 pub(crate) use log::{Change, Event, RunLog};
-pub(crate) use mark::{fingerprint, landmarks, numbers, Mark, MarkKind, SourcePlace};
+pub(crate) use mark::{fingerprint, landmarks, numbers, Lines, Mark, MarkKind, SourcePlace};
 
 use serde::{Deserialize, Serialize};
 
