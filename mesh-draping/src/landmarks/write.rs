@@ -262,7 +262,7 @@ mod tests {
         let text = r#"{"landmarks": [
             {"source": {"vertex": 3}, "target": {"vertex": 3}, "weight": 0.5},
             {"name": "brow", "weight": 2.5, "curve": {
-                "source": [0, {"face": 7, "barycentric": [0.25, 0.25, 0.25, 0.25]}, [0.1, 0.2, 1.0]],
+                "source": [0, {"face": 7, "barycentric": [0.4, 0.3, 0.2, 0.1]}, [0.1, 0.2, 1.0]],
                 "target": [0, [0.5, 0.5, 2.0], {"vertex": 9}]}},
             {"source": {"vertex": 5}, "target": {"vertex": 5}}]}"#;
         let read = |text: &str| parse(text, None, &source, target.vertices()).unwrap();
