@@ -120,7 +120,9 @@ impl<'a> Search<'a> {
     /// The nodes on the way to the goal; none where it was not reached.
     fn way(&self) -> Option<Vec<usize>> {
         let before = |node: &usize| self.known.get(node)?.1;
-        let mut way: Vec<usize> = std::iter::successors(before(&self.goal), before).collect();
+        // The goal always has a node before it.
+        let last = before(&self.goal)?;
+        let mut way: Vec<usize> = std::iter::successors(Some(last), before).collect();
         way.reverse();
         Some(way)
     }
