@@ -102,7 +102,9 @@ fn curves_and_weights_are_draped_told_and_converted() {
     assert!(place.read("report.html").contains("curve 0 (girdle)"));
     let metrics = "metrics source.obj out.obj target.ply --landmarks curved.json --json";
     let report = place.drape(metrics).well().json();
-    let worst = report["report"]["curves"][0]["max"].as_f64().expect("a number");
+    let worst = report["report"]["curves"][0]["max"]
+        .as_f64()
+        .expect("a number");
     assert!(worst < 0.01, "{worst}");
     let check = place
         .drape("landmarks check source.obj target.ply curved.json")

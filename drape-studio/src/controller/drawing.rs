@@ -75,10 +75,11 @@ impl Controller {
         Ok(json!({ "landmark": id }))
     }
 
-    /// Gives up the curve that is drawn.
-    pub(super) fn cancel_curve(&mut self) {
+    /// Gives up the curve that is drawn; there is nothing to answer.
+    pub(super) fn cancel_curve(&mut self) -> Value {
         self.drawing = None;
         self.publish();
+        Value::Null
     }
 
     /// The curve that is drawn, for pages; nothing where none is.

@@ -23,10 +23,7 @@ impl Controller {
             Edit::Place { shape, ray } => return self.place(shape, &ray),
             Edit::Draw { shape, ray } => return self.draw(shape, &ray),
             Edit::EndCurve => return self.end_curve(),
-            Edit::CancelCurve => {
-                self.cancel_curve();
-                return Ok(Value::Null);
-            }
+            Edit::CancelCurve => return Ok(self.cancel_curve()),
             Edit::Drag {
                 landmark,
                 shape,
@@ -41,11 +38,7 @@ impl Controller {
                 let name: String = name.trim().chars().take(MAX_NAME).collect();
                 self.change_mark(landmark, |m| m.name = name)?;
             }
-            Edit::Weight { landmark, weight } => {
-                let is_weight = (0.0..=MAX_WEIGHT).contains(&weight);
-                ensure!(is_weight, "a weight is a number from 0 to {MAX_WEIGHT}");
-                self.change_mark(landmark, |m| m.weight = weight)?;
-            }
+            Edit::Weight { landmark, weight } => self.weigh(landmark, weight)?,
             Edit::Kind { landmark, kind } => self.change_mark(landmark, |m| m.kind = kind)?,
             Edit::Paint(dab) => return self.paint(&dab),
             Edit::ClearWeights => self.session.edit(|d| d.parts.weights = None),
@@ -80,6 +73,12 @@ impl Controller {
         }
         self.edited();
         Ok(Value::Null)
+    }
+
+    fn weigh(&mut self, landmark: u32, weight: f64) -> Result<()> {
+        let is_weight = (0.0..=MAX_WEIGHT).contains(&weight);
+        ensure!(is_weight, "a weight is a number from 0 to {MAX_WEIGHT}");
+        self.change_mark(landmark, |m| m.weight = weight)
     }
 
     /// Settings of the next drape, and those that are saved by name.

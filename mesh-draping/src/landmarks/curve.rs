@@ -246,6 +246,24 @@ mod tests {
     }
 
     #[test]
+    fn places_that_nothing_joins_are_named() {
+        let mut soup = shapes::open_grid(2, 2);
+        let apart = soup
+            .positions
+            .iter()
+            .map(|p| Point3::new(p.x + 5.0, p.y, p.z));
+        let apart: Vec<Point3> = apart.collect();
+        let faces = soup.faces.clone();
+        soup.positions.extend(apart);
+        soup.faces
+            .extend(faces.iter().map(|f| f.iter().map(|v| v + 9).collect()));
+        let source = Source::of_soup(soup, Seams::EXACT).unwrap();
+        let across = curve(&[0, 8, 12], &[[0.0; 3], [1.0, 0.0, 0.0]]);
+        let told = cut(across, &source).unwrap_err().to_string();
+        assert!(told.contains("joins its places 1 and 2"), "{told}");
+    }
+
+    #[test]
     fn what_cannot_be_cut_is_named() {
         let line = [[0.0; 3], [1.0, 0.0, 0.0]];
         let round = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0; 3]];

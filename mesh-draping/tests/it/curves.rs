@@ -69,6 +69,7 @@ fn error_along(outcome: &Outcome, initial: bool) -> f64 {
 }
 
 #[test]
+#[expect(clippy::print_stdout, reason = "the figures are asked for")]
 fn a_curve_brings_the_line_between_its_ends_to_its_place() {
     let with = run(sheet());
     let mut pair = sheet();

@@ -249,7 +249,8 @@ fn pulled(weight: f64, config: &InitConfig) -> (Shape, Vec<Landmark>, Positions)
     let mut list = landmarks(&[0, 20, 60, 130, 300].map(VertexId::new), &s.rest);
     list[2].target.x += 0.5;
     list[2].weight = weight;
-    let positions = run(&s, &list, &s.rest, config).unwrap().positions;
+    let initial = run(&s, &list, &s.rest, config);
+    let positions = initial.expect("a ball is deformed").positions;
     (s, list, positions)
 }
 

@@ -82,6 +82,32 @@ fn a_session_with_a_curve_and_weights_is_replayed_to_the_bit() {
     wire.state(|s| s["drawing"].is_null());
 }
 
+/// Clicks along the curve on both shapes, in the mode that C begins.
+fn draw(page: &Page) {
+    let along = [-0.2, -0.05, 0.1, 0.22];
+    // A ball, and a ball of four, three and two and a half: views have the longest side as 1.
+    let on_source = |x: f64| [x, 0.1, (0.24 - x * x).sqrt()];
+    let on_target = |x: f64| {
+        let z = 0.3125 * (1.0 - (x / 0.5).powi(2) - (0.1f64 / 0.375).powi(2)).sqrt();
+        [x, 0.1, z]
+    };
+    let places: [(&str, [Place; 4]); 2] = [
+        ("source", along.map(on_source)),
+        ("target", along.map(on_target)),
+    ];
+    page.key("c", 67, 0);
+    page.wait("studio.curves.isOn");
+    for (side, places) in places {
+        for (k, place) in places.into_iter().enumerate() {
+            page.click(find(page, side, place));
+            page.wait(&format!(
+                "studio.state.drawing?.{side}.length === {}",
+                k + 1
+            ));
+        }
+    }
+}
+
 #[test]
 fn a_curve_is_drawn_with_the_pointer() {
     let Some(browser) = browser() else { return };
@@ -89,52 +115,16 @@ fn a_curve_is_drawn_with_the_pointer() {
     let server = Server::start(&folder.path(""), &SHORT);
     let page = Page::open(&browser, &server.url, [1280, 800]);
     page.wait("studio.views.result.shape && studio.state.can.export");
-    let click = |side: &str, at: Place| {
-        let place = find(&page, side, at);
-        page.click(place);
-    };
-    let along = [-0.2, -0.05, 0.1, 0.22];
-    let on_ball = |x: f64| [x, 0.1, (0.25 - x * x - 0.01f64).sqrt()];
-    // The target is four, three and two and a half wide; its view has its longest side as 1.
-    let on_target = |x: f64| {
-        let [x, y] = [x, 0.1];
-        [
-            x,
-            y,
-            0.3125 * (1.0 - (x / 0.5).powi(2) - (y / 0.375).powi(2)).sqrt(),
-        ]
-    };
-    let draw = || {
-        page.key("c", 67, 0);
-        page.wait("studio.curves.isOn");
-        for (k, x) in along.into_iter().enumerate() {
-            click("source", on_ball(x));
-            page.wait(&format!(
-                "studio.state.drawing?.source.length === {}",
-                k + 1
-            ));
-        }
-        for (k, x) in along.into_iter().enumerate() {
-            click("target", on_target(x));
-            page.wait(&format!(
-                "studio.state.drawing?.target.length === {}",
-                k + 1
-            ));
-        }
-    };
-    draw();
+    draw(&page);
     page.key("Escape", 27, 0);
     page.wait(
         "!studio.curves.isOn && studio.state.drawing === null && studio.state.curves.length === 0",
     );
-    draw();
+    draw(&page);
     page.key("Enter", 13, 0);
     page.wait("!studio.curves.isOn && studio.state.curves.length === 1");
     assert_eq!(page.value("studio.state.landmarks.length"), json!(6));
     probed(&page);
-    if let Ok(path) = std::env::var("STUDIO_PICTURE") {
-        fs::write(path, page.picture()).unwrap();
-    }
     for side in ["source", "target", "result"] {
         let line = format!("document.querySelector('#view-{side} .curves .line').getAttribute('points').split(' ').length");
         assert!(
