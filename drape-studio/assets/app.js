@@ -4,6 +4,7 @@ import { Brush } from "./brush.js";
 import { Cameras } from "./cameras.js";
 import { Chart } from "./chart.js";
 import { control } from "./commands.js";
+import { Curves } from "./curves.js";
 import { Legend } from "./heats.js";
 import { Cursor } from "./cursor.js";
 import { Files, showScans } from "./files.js";
@@ -45,6 +46,7 @@ class App {
     this.panels = new Panels(this);
     this.strip = new Strip(this);
     this.brush = new Brush(this);
+    this.curves = new Curves(this);
     this.cursor = new Cursor(this);
     this.words = new Words(this);
     this.chart = new Chart($("chart"));
@@ -122,6 +124,7 @@ class App {
     this.parts.show(state);
     this.strip.show(state);
     this.brush.show(state);
+    this.curves.show(state);
     showScans(this, state.scans);
     this.panels.showProgress(this.progress, state);
     this.panels.showFigures(this.figures, state);
@@ -176,6 +179,7 @@ class App {
 
   async place(view, ray) {
     if (!this.state) return;
+    if (this.curves.isOn) return void this.curves.add(view, ray);
     try {
       const answer = await this.link.ask("edit", { do: "place", shape: view.name, ray });
       if (!answer) this.words.note("The click missed: nothing is there");
@@ -196,6 +200,7 @@ class App {
   // Gives up the pair that is half made; else nothing is chosen any more.
   escape() {
     if (this.cursor.isShown) return void this.cursor.hide();
+    if (this.curves.cancel()) return;
     const waiting = this.landmarks.filter((l) => !l.source || !l.target);
     if (waiting.length === 1) {
       this.edit("delete", { landmark: waiting[0].id });

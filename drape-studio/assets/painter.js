@@ -81,6 +81,7 @@ export class Painter {
       [view.isStale, view.isUnprobed] = [false, false];
       if (view.probes.collect()) this.refresh();
       view.markers.show(landmarks, app.chosen);
+      app.curves.draw(view);
     }
     app.panels.showMisses(app.stage.misses(landmarks), app.chosen);
   }

@@ -2,6 +2,7 @@
 
 import { markColour } from "./colours.js";
 import { digitsOf, labelOf } from "./markers.js";
+import { weightField } from "./weights.js";
 
 const $ = (id) => document.getElementById(id);
 // Misses above this many hundredths of the longest side stand out.
@@ -145,6 +146,7 @@ export class Panels {
       row.kind.textContent = landmark.kind;
       row.kind.setAttribute("aria-label", `${label} is ${landmark.kind}; change`);
       row.kind.dataset.kind = landmark.kind;
+      row.weight.show(landmark.weight, label);
       row.remove.setAttribute("aria-label", `Delete ${label}`);
       if (list.children[k] !== row.item) list.insertBefore(row.item, list.children[k] ?? null);
     });
@@ -152,7 +154,7 @@ export class Panels {
 
   addRow(id) {
     const make = (tag, name, text) => Object.assign(document.createElement(tag), { className: name, textContent: text });
-    const row = { item: make("li", "", ""), number: make("button", "number", ""), name: make("input", "", ""), miss: make("span", "miss", ""), kind: make("button", "", ""), remove: make("button", "", "×") };
+    const row = { item: make("li", "", ""), number: make("button", "number", ""), name: make("input", "", ""), miss: make("span", "miss", ""), weight: weightField(this.app, id), kind: make("button", "", ""), remove: make("button", "", "×") };
     row.name.type = "text";
     row.name.maxLength = 80;
     row.miss.title = "How far it is off, in hundredths of the target's longest side";
@@ -164,7 +166,7 @@ export class Panels {
     row.name.addEventListener("keydown", (event) => event.key === "Enter" && row.name.blur());
     row.kind.addEventListener("click", () => this.app.edit("kind", { landmark: id, kind: row.kind.dataset.kind === "soft" ? "rigid" : "soft" }));
     row.remove.addEventListener("click", () => this.app.edit("delete", { landmark: id }));
-    row.item.append(row.number, row.name, row.miss, row.kind, row.remove);
+    row.item.append(row.number, row.name, row.miss, row.weight.element, row.kind, row.remove);
     this.rows.set(id, row);
     return row;
   }

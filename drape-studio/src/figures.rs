@@ -127,9 +127,10 @@ impl Figures {
 /// Root mean square of what the landmarks are off.
 fn landmark_rms(job: &FiguresJob) -> f64 {
     let side = job.displayed.target.judged().bounds().longest_side();
-    let squares = job.landmarks.iter().map(|l| {
+    let marked = Landmark::marked(&job.landmarks).filter(|l| l.is_followed());
+    let squares = marked.clone().map(|l| {
         let miss = (l.source.position(&job.positions) - l.target).norm();
         (miss / side.max(f64::MIN_POSITIVE)).powi(2)
     });
-    (squares.sum::<f64>() / job.landmarks.len().max(1) as f64).sqrt()
+    (squares.sum::<f64>() / marked.count().max(1) as f64).sqrt()
 }

@@ -83,7 +83,8 @@ impl LoggedRun {
 
     /// Goes on with other landmarks.
     pub(crate) fn set_marks(&mut self, marks: Vec<Mark>) -> Result<()> {
-        self.draping.set_landmarks(landmarks(&marks))?;
+        let landmarks = landmarks(&marks, &self.shapes.source);
+        self.draping.set_landmarks(landmarks)?;
         self.note(Change::Landmarks(marks));
         Ok(())
     }
@@ -158,9 +159,12 @@ impl LoggedRun {
 /// The drape of a log at its start.
 fn begin(shapes: &Shapes, log: &RunLog) -> Result<Draping> {
     let preset = Preset::from_toml(&log.settings)?;
-    let transfer = Transfer::of_pair(shapes.pair(landmarks(&log.landmarks)), preset)
-        .with_regions(shapes.regions(&log.parts)?)
-        .without_stand_in();
+    let transfer = Transfer::of_pair(
+        shapes.pair(landmarks(&log.landmarks, &shapes.source)),
+        preset,
+    )
+    .with_regions(shapes.regions(&log.parts)?)
+    .without_stand_in();
     Ok(transfer.start()?)
 }
 
@@ -168,6 +172,7 @@ fn begin(shapes: &Shapes, log: &RunLog) -> Result<Draping> {
 fn restore(shapes: &Shapes, log: &RunLog, state: &DrapeState) -> Result<Draping> {
     let mut draping = begin(shapes, log)?;
     let regions = shapes.regions(log.last_parts())?;
-    draping.restore(state, landmarks(log.last_landmarks()), regions)?;
+    let landmarks = landmarks(log.last_landmarks(), &shapes.source);
+    draping.restore(state, landmarks, regions)?;
     Ok(draping)
 }

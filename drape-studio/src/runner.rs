@@ -276,7 +276,7 @@ impl Run<'_> {
             displayed: self.parts.displayed.clone(),
             positions: Arc::new(self.drape.positions()),
             counterparts: Arc::new(self.drape.counterparts()),
-            landmarks: landmarks(log.last_landmarks()),
+            landmarks: landmarks(log.last_landmarks(), &self.parts.displayed.shapes.source),
             iteration: Some(log.iteration),
             is_resting,
         });

@@ -58,7 +58,7 @@ pub use fans::{is_on_side, TriangleFans, ON_SIDE};
 pub use gradients::map_gradients;
 pub use halfedge::HalfedgeMesh;
 pub use ids::{EdgeId, FaceId, HalfedgeId, Id, VertexId};
-pub use landmark::{Landmark, LandmarkKind, MeshPoint};
+pub use landmark::{Curve, CurveShare, Landmark, LandmarkKind, MeshPoint};
 pub use measure::{Aabb, UnitFrame};
 pub use profile::{Clock, Profile, Span};
 pub use proxy::Proxy;

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use mesh_core::{measure, FaceId, Point3, Positions, TriangleBvh, VertexData, VertexId};
+use mesh_core::{measure, FaceId, Landmark, Point3, Positions, TriangleBvh, VertexData, VertexId};
 use mesh_metrics::{percentiles, Counterparts};
 use serde::{Serialize, Serializer};
 
@@ -262,7 +262,7 @@ impl<'a> Case<'a> {
 
     /// The landmark that gives a place its name.
     fn landmark_near(&self, point: &Point3) -> Option<(Label, f64)> {
-        let landmarks = &self.pair.landmarks;
+        let landmarks: Vec<&Landmark> = Landmark::marked(&self.pair.landmarks).collect();
         let far = landmarks.iter().enumerate();
         let far = far.map(|(k, l)| ((l.target - point).norm() / self.side, k));
         let (distance, k) = far.min_by(|a, b| a.0.total_cmp(&b.0))?;

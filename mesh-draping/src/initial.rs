@@ -53,7 +53,7 @@ pub struct InitialShape {
 /// Landmarks that do not fit the source, or a deformation that cannot be solved for.
 pub fn initial_deformation(pair: &Pair, method: InitialMethod) -> Result<InitialShape, Error> {
     let (source, landmarks) = (&pair.source, &pair.landmarks);
-    let pose = (landmarks.len() < ENOUGH_TO_STAND)
+    let pose = (pair.n_followed() < ENOUGH_TO_STAND)
         .then(|| search_pose(pair))
         .flatten();
     let placed = match &pose {
@@ -76,7 +76,7 @@ pub fn initial_deformation(pair: &Pair, method: InitialMethod) -> Result<Initial
             placed.map(|p| affine.apply(p))
         }
     };
-    let notes = pose.iter().flat_map(|p| assumed(p, landmarks.len()));
+    let notes = pose.iter().flat_map(|p| assumed(p, pair.n_followed()));
     Ok(InitialShape {
         notes: notes.collect(),
         positions,

@@ -46,6 +46,11 @@ impl Pair {
         examine(self)
     }
 
+    /// How many landmarks count: those of curves too, those of weight 0 not.
+    pub(crate) fn n_followed(&self) -> usize {
+        self.landmarks.iter().filter(|l| l.is_followed()).count()
+    }
+
     /// What was found in the files of both shapes, and what was left out of the target.
     pub fn notes(&self) -> Vec<Note> {
         let mut notes = self.source.notes();

@@ -43,7 +43,7 @@ impl StandIn {
     /// A stand-in of about `n` vertices; of all of them where the source has no more.
     pub(crate) fn with_vertices(pair: &Pair, n: usize) -> Result<Self, Error> {
         let source = &pair.source;
-        let marked = pair.landmarks.iter().flat_map(|l| l.source.vertices);
+        let marked = Landmark::marked(&pair.landmarks).flat_map(|l| l.source.vertices);
         let marked: Vec<VertexId> = marked.collect();
         let proxy = Proxy::new(source.triangulation(), source.rest(), n, &marked);
         let rows = 0..proxy.vertices().len() as u32;
@@ -70,7 +70,7 @@ impl StandIn {
     }
 
     /// Landmarks of the source on the stand-in. Their vertices are kept as long as the stand-in was made for them; of
-    /// others the nearest that is left is taken.
+    /// others, and along curves, the nearest place that is left is taken.
     pub(crate) fn landmarks(&self, landmarks: &[Landmark]) -> Vec<Landmark> {
         let landmark = |l: &Landmark| Landmark {
             source: self.place(&l.source),

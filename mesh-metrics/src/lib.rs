@@ -46,7 +46,7 @@ pub use normalize::{common_frame, own_frame, total_area};
 pub use percentile::percentiles;
 pub use q_transfer::{q_transfer, HAUSDORFF_WEIGHT, PAPER_TAU};
 pub use report::{
-    Defects, DistanceSummary, LandmarkFit, LandmarkResidual, Places, Report, TruthError,
+    CurveFit, Defects, DistanceSummary, LandmarkFit, LandmarkResidual, Places, Report, TruthError,
 };
 pub use self_intersection::self_intersections;
 

@@ -3,7 +3,8 @@
 Wherever landmarks are taken, they may be
 
 - the path of a landmark file of any form,
-- a list of entries as in such a file: ``{"name": "nose", "source": {"vertex": 12}, "target": {"point": [0, 2, 0.3]}}``,
+- a list of entries as in such a file: ``{"name": "nose", "source": {"vertex": 12}, "target": {"point": [0, 2, 0.3]}}``, with
+  a ``"weight"`` if it is not 1, or a curve: ``{"curve": {"source": [7, 8, 12], "target": [[0, 1, 0], [1, 1, 0]]}}``,
 - a list of pairs ``(row of the source's vertex, target)`` where the target is a row of its vertices or a point,
 - two arrays ``(rows of the source's vertices, shape (k,); points of the target, shape (k, 3))``.
 """
@@ -13,6 +14,7 @@ from __future__ import annotations
 import json
 import numbers
 import os
+import warnings
 from typing import Any, Iterable, List, Mapping, NamedTuple
 
 import numpy as np
@@ -42,10 +44,12 @@ def read(path: Path, source: Any, target: Any) -> "List[Entry]":
 def write(landmarks: Any, source: Any, target: Any, path: Path, form: str = "json") -> float:
     """Writes landmarks as ``form``: json (nothing is lost), lists, text, ids or points.
 
-    Gives how far the farthest place had to move to the nearest vertex, where the form holds vertices only.
+    Gives how far the farthest place had to move to the nearest vertex, where the form holds vertices only. Warns of weights
+    and curves that the form has no place for.
     """
     source, target = as_source(source), as_target(target)
-    text, moved = resolved(landmarks, source, target).text(source._native, target._native, form)
+    text, moved, lost = resolved(landmarks, source, target).text(source._native, target._native, form)
+    _warn(lost)
     with open(path, "w", encoding="utf-8") as file:
         file.write(text)
     return moved
@@ -61,7 +65,8 @@ def read_wrap(on_source: Path, on_target: Path, source: Any, target: Any) -> "Li
 def write_wrap(landmarks: Any, source: Any, target: Any, on_source: Path, on_target: Path) -> None:
     """Writes landmarks as the two point files of Faceform Wrap."""
     source, target = as_source(source), as_target(target)
-    texts = resolved(landmarks, source, target).wrap_texts(source._native, target._native)
+    *texts, lost = resolved(landmarks, source, target).wrap_texts(source._native, target._native)
+    _warn(lost)
     for path, text in zip((on_source, on_target), texts):
         with open(path, "w", encoding="utf-8") as file:
             file.write(text)
@@ -106,8 +111,14 @@ def resolved(landmarks: Any, source: Source, target: Target) -> _native.Landmark
 
 
 def _entries(landmarks: _native.Landmarks, source: Source, target: Target) -> "List[Entry]":
-    text, _ = landmarks.text(source._native, target._native, "json")
+    text, _, _ = landmarks.text(source._native, target._native, "json")
     return json.loads(text)["landmarks"]
+
+
+def _warn(lost: "list[str]") -> None:
+    """Says what a form of landmark file leaves out."""
+    for words in lost:
+        warnings.warn(f"{words}: this form has no place for it", stacklevel=3)
 
 
 def _listed(landmarks: Any) -> "List[Entry]":

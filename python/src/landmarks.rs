@@ -2,8 +2,8 @@
 
 use std::path::PathBuf;
 
-use mesh_draping::landmarks::{self, leave_one_out_residuals, Finding, Form, WrapPoints};
-use mesh_draping::mesh_core::Landmark;
+use mesh_draping::landmarks::{self, leave_one_out_residuals, Finding, Form, Lost, WrapPoints};
+use mesh_draping::mesh_core::{Curve, Landmark};
 use mesh_draping::Pair;
 use pyo3::prelude::*;
 use serde_json::json;
@@ -46,10 +46,16 @@ impl Landmarks {
         Ok(Self(read.map_err(told)?))
     }
 
-    /// The texts of the two point files of Faceform Wrap.
-    fn wrap_texts(&self, source: &Source, target: &Target) -> PyResult<(String, String)> {
+    /// The texts of the two point files of Faceform Wrap, and what they leave out.
+    fn wrap_texts(
+        &self,
+        source: &Source,
+        target: &Target,
+    ) -> PyResult<(String, String, Vec<String>)> {
         let written = landmarks::write_wrap(&self.0, &source.0, &target.0).map_err(told)?;
-        Ok((written.source, written.target))
+        let lost = Lost::without_both(&self.0).into_iter();
+        let lost = lost.map(|lost| lost.to_string());
+        Ok((written.source, written.target, lost.collect()))
     }
 
     /// The landmarks in the text of a landmark file.
@@ -59,14 +65,21 @@ impl Landmarks {
         Ok(Self(parsed.map_err(told)?))
     }
 
+    /// How many landmarks and curves there are.
     fn __len__(&self) -> usize {
-        self.0.len()
+        Landmark::marked(&self.0).count() + Curve::runs(&self.0).count()
     }
 
-    /// The text of a landmark file, and how far the farthest place had to move to a vertex.
-    fn text(&self, source: &Source, target: &Target, form: &str) -> PyResult<(String, f64)> {
+    /// The text of a landmark file, how far the farthest place had to move to a vertex, and what the form leaves out.
+    fn text(
+        &self,
+        source: &Source,
+        target: &Target,
+        form: &str,
+    ) -> PyResult<(String, f64, Vec<String>)> {
         let written = landmarks::write(&self.0, &source.0, &target.0, named(form)?);
-        Ok((written.text, written.moved))
+        let lost = written.lost.iter().map(Lost::to_string);
+        Ok((written.text, written.moved, lost.collect()))
     }
 
     /// How far each is from where the others expect it, and what looks wrong.

@@ -7,8 +7,10 @@ use std::process::ExitCode;
 use anyhow::ensure;
 use clap::Subcommand;
 use mesh_core::io::write_atomic;
-use mesh_core::Landmark;
-use mesh_draping::landmarks::{self, leave_one_out_residuals, Finding, Form, Label, WrapPoints};
+use mesh_core::{Curve, Landmark};
+use mesh_draping::landmarks::{
+    self, leave_one_out_residuals, Finding, Form, Label, Lost, WrapPoints,
+};
 use mesh_draping::{Pair, Seams};
 
 use crate::args::{Inputs, PipeArgs};
@@ -81,9 +83,9 @@ struct Output {
 /// [`Form`] on the command line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 enum FormArg {
-    /// JSON with names, places in faces and kinds: nothing is lost
+    /// JSON with names, places in faces, kinds, weights and curves: nothing is lost
     Json,
-    /// JSON of two lists, source_vertices and target_points
+    /// JSON of two lists, source_vertices and target_points, and weights where any is not 1
     Lists,
     /// Lines of source vertex, target x y z, name
     Text,
@@ -138,9 +140,7 @@ fn check(files: &Files) -> anyhow::Result<ExitCode> {
     let findings = pair.findings();
     let findings: Vec<String> = findings.iter().map(Finding::to_string).collect();
     if files.json {
-        let list: Vec<_> = pair
-            .landmarks
-            .iter()
+        let list: Vec<_> = Landmark::marked(&pair.landmarks)
             .zip(&residuals)
             .map(|(l, r)| serde_json::json!({ "name": l.name, "left_out_residual": r }))
             .collect();
@@ -150,7 +150,8 @@ fn check(files: &Files) -> anyhow::Result<ExitCode> {
         let mut text = String::from(
             "distance from where the other landmarks expect each, in % of the target's longest side\n",
         );
-        for (k, (l, residual)) in pair.landmarks.iter().zip(&residuals).enumerate() {
+        let marked = Landmark::marked(&pair.landmarks);
+        for (k, (l, residual)) in marked.zip(&residuals).enumerate() {
             let _ = writeln!(
                 text,
                 "{:>8.2}  {}",
@@ -233,10 +234,13 @@ fn add_mirrored(args: &Output) -> anyhow::Result<ExitCode> {
         n.x,
         n.y,
         n.z,
-        added.len()
+        Landmark::marked(&added).count() + Curve::runs(&added).count()
     );
-    for l in &added {
+    for l in Landmark::marked(&added) {
         let _ = writeln!(text, "  {}", l.name.as_deref().unwrap_or_default());
+    }
+    for (curve, _) in Curve::runs(&added) {
+        let _ = writeln!(text, "  {}", curve.name.as_deref().unwrap_or_default());
     }
     say(&text)?;
     let all: Vec<Landmark> = pair.landmarks.iter().chain(&added).cloned().collect();
@@ -259,6 +263,7 @@ impl Convert {
             "--target-output is the same file as -o"
         );
         let written = landmarks::write_wrap(&pair.landmarks, &pair.source, &pair.target)?;
+        warn_lost(&Lost::without_both(&pair.landmarks));
         write_atomic(&output.output, written.source.as_bytes())?;
         write_atomic(path, written.target.as_bytes())?;
         say(&format!(
@@ -285,6 +290,13 @@ impl Convert {
             ..shapes
         })
     }
+}
+
+/// Says what a form of landmark file leaves out.
+fn warn_lost(lost: &[Lost]) {
+    let words = lost.iter();
+    let words = words.map(|lost| format!("{lost}: this form has no place for it; json does"));
+    warn(&words.collect::<Vec<_>>());
 }
 
 impl Output {
@@ -316,6 +328,7 @@ impl Output {
                 written.moved
             )]);
         }
+        warn_lost(&written.lost);
         write_atomic(&self.output, written.text.as_bytes())?;
         say(&format!("wrote {}\n", self.output.display()))?;
         Ok(ExitCode::SUCCESS)

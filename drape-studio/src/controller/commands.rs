@@ -9,7 +9,7 @@ use super::can::{Action, Status, OPEN_FIRST};
 use super::{ActiveRun, Command, Controller, Inbox};
 use crate::checkpoint::{self, Checkpoint};
 use crate::runner::{Order, Runner, RunnerParts, Update};
-use crate::session::{landmarks, Mark, RunLog};
+use crate::session::{Mark, RunLog};
 
 impl Controller {
     /// Does what drives the drape, if that fits it as it is.
@@ -218,9 +218,8 @@ impl Controller {
             return false;
         };
         let places = |marks: &[Mark]| {
-            let unnamed = landmarks(marks)
-                .into_iter()
-                .map(|l| (l.source, l.target, l.kind));
+            let complete = marks.iter().filter(|mark| mark.is_complete());
+            let unnamed = complete.map(Mark::unnamed);
             unnamed.collect::<Vec<_>>()
         };
         places(run.log.last_landmarks()) != places(&self.session.document.marks)
@@ -228,6 +227,6 @@ impl Controller {
 
     fn complete_marks(&self) -> Vec<Mark> {
         let marks = self.session.document.marks.iter();
-        marks.filter(|m| m.landmark().is_some()).cloned().collect()
+        marks.filter(|m| m.is_complete()).cloned().collect()
     }
 }

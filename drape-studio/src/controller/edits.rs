@@ -1,7 +1,8 @@
 //! Edits of landmarks and settings.
 
 use anyhow::{ensure, Context as _, Result};
-use mesh_core::Landmark;
+use mesh_core::{Curve, Landmark};
+use mesh_draping::landmarks::MAX_WEIGHT;
 use mesh_draping::Preset;
 use serde_json::Value;
 
@@ -20,6 +21,9 @@ impl Controller {
         }
         match edit {
             Edit::Place { shape, ray } => return self.place(shape, &ray),
+            Edit::Draw { shape, ray } => return self.draw(shape, &ray),
+            Edit::EndCurve => return self.end_curve(),
+            Edit::CancelCurve => return Ok(self.cancel_curve()),
             Edit::Drag {
                 landmark,
                 shape,
@@ -34,6 +38,7 @@ impl Controller {
                 let name: String = name.trim().chars().take(MAX_NAME).collect();
                 self.change_mark(landmark, |m| m.name = name)?;
             }
+            Edit::Weight { landmark, weight } => self.weigh(landmark, weight)?,
             Edit::Kind { landmark, kind } => self.change_mark(landmark, |m| m.kind = kind)?,
             Edit::Paint(dab) => return self.paint(&dab),
             Edit::ClearWeights => self.session.edit(|d| d.parts.weights = None),
@@ -68,6 +73,12 @@ impl Controller {
         }
         self.edited();
         Ok(Value::Null)
+    }
+
+    fn weigh(&mut self, landmark: u32, weight: f64) -> Result<()> {
+        let is_weight = (0.0..=MAX_WEIGHT).contains(&weight);
+        ensure!(is_weight, "a weight is a number from 0 to {MAX_WEIGHT}");
+        self.change_mark(landmark, |m| m.weight = weight)
     }
 
     /// Settings of the next drape, and those that are saved by name.
@@ -159,14 +170,17 @@ impl Controller {
     /// Takes the landmarks of a file.
     pub(super) fn adopt(&mut self, landmarks: &[Landmark]) -> Result<()> {
         ensure!(
-            landmarks.len() <= MAX_MARKS,
+            Landmark::marked(landmarks).count() + Curve::runs(landmarks).count() <= MAX_MARKS,
             "{MAX_MARKS} landmarks are enough"
         );
         self.finish_drag();
-        let marks: Vec<Mark> = landmarks
-            .iter()
+        let points = Landmark::marked(landmarks);
+        let mut marks: Vec<Mark> = points
             .map(|l| Mark::of(self.session.fresh_id(), l))
             .collect();
+        for (curve, _) in Curve::runs(landmarks) {
+            marks.push(Mark::of_curve(self.session.fresh_id(), curve));
+        }
         self.session.edit(|d| d.marks = marks);
         self.edited();
         Ok(())

@@ -74,11 +74,13 @@ impl Controller {
             figures: None,
         });
         let log = shown.provenance.as_ref().map(|p| &p.log);
+        let displayed = self.displayed.clone().context(OPEN_FIRST)?;
+        let source = &displayed.shapes.source.clone();
         let job = FiguresJob {
-            displayed: self.displayed.clone().context(OPEN_FIRST)?,
+            displayed,
             positions: Arc::clone(&shown.positions),
             counterparts: shown.counterparts(),
-            landmarks: log.map_or_else(Vec::new, |log| landmarks(log.last_landmarks())),
+            landmarks: log.map_or_else(Vec::new, |log| landmarks(log.last_landmarks(), source)),
             iteration: Some(shown.iteration()),
             is_resting: true,
         };
@@ -131,7 +133,7 @@ impl Controller {
         let log = history.log;
         let (marks, parts) = (log.last_landmarks().to_vec(), log.last_parts().clone());
         self.session.edit(|d| {
-            let half = d.marks.iter().filter(|m| m.landmark().is_none()).cloned();
+            let half = d.marks.iter().filter(|m| !m.is_complete()).cloned();
             d.marks = marks.into_iter().chain(half.collect::<Vec<_>>()).collect();
             (d.parts, d.settings) = (parts, log.settings.clone());
         });

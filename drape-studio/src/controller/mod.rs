@@ -2,6 +2,7 @@
 
 mod can;
 mod commands;
+mod drawing;
 mod edits;
 mod history;
 mod paint;
@@ -38,7 +39,7 @@ use crate::kept_files::KeptFiles;
 use crate::latest::Latest;
 use crate::preview::{live_preview, preview, PreviewJob, PreviewOf};
 use crate::runner::{Runner, Update};
-use crate::session::{Document, InputRecord, RunLog, Session};
+use crate::session::{Document, InputRecord, Lines, RunLog, Session};
 use crate::shapes::Shapes;
 
 /// Edits are on disk after this long.
@@ -141,6 +142,8 @@ pub(crate) struct Controller {
     notice: Option<String>,
     /// The document before the drag that goes on.
     dragged_from: Option<Document>,
+    /// The curve that is being drawn.
+    drawing: Option<Lines>,
     /// The stroke of the brush that goes on.
     stroke: Option<paint::Stroke>,
     /// The shape shown under this number, to pick on.
@@ -179,6 +182,7 @@ impl Controller {
             preview_error: None,
             notice: parts.notice,
             dragged_from: None,
+            drawing: None,
             stroke: None,
             shown_bvh: None,
             revision: 0,
@@ -331,7 +335,10 @@ impl Controller {
     }
 
     fn landmarks(&self) -> Vec<Landmark> {
-        crate::session::landmarks(&self.session.document.marks)
+        let source = self.source.as_ref();
+        source.map_or_else(Vec::new, |source| {
+            crate::session::landmarks(&self.session.document.marks, &source.source)
+        })
     }
 
     fn snapshot(&self) -> Snapshot {

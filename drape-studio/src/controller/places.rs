@@ -7,7 +7,7 @@ use serde_json::{json, Value};
 
 use super::{Controller, Shape};
 use crate::pick::{first_hit, Ray};
-use crate::session::{numbers, Mark, MarkKind, SourcePlace, MAX_MARKS};
+use crate::session::{numbers, Mark, SourcePlace, MAX_MARKS};
 
 /// Marks nearer to each other than this, in longest sides, are at one place.
 const SAME_PLACE: f64 = 0.002;
@@ -60,13 +60,7 @@ impl Controller {
         let twin_id = self.session.fresh_id();
         let mut document = self.session.document.clone();
         if half.is_none() {
-            document.marks.push(Mark {
-                id,
-                name: String::new(),
-                source: None,
-                target: None,
-                kind: MarkKind::Soft,
-            });
+            document.marks.push(Mark::empty(id));
         }
         let mut twin = None;
         if let Some(mark) = document.marks.iter_mut().find(|m| m.id == id) {
@@ -87,7 +81,7 @@ impl Controller {
     fn half_made(&self, place: &Place) -> Option<u32> {
         let half = || {
             let marks = self.session.document.marks.iter();
-            marks.filter(|m| m.landmark().is_none())
+            marks.filter(|m| !m.is_complete())
         };
         let waiting = half().find(|mark| place.is_missing_of(mark));
         let only = half().next().filter(|_| half().count() == 1);

@@ -101,6 +101,20 @@ pub(crate) enum Edit {
         landmark: u32,
         kind: MarkKind,
     },
+    /// Adds a place to the curve that is drawn; begins one where none is.
+    Draw {
+        shape: Shape,
+        ray: Ray,
+    },
+    /// Takes the curve as it is drawn: one edit.
+    EndCurve,
+    /// Gives it up.
+    CancelCurve,
+    /// What a landmark or a curve counts.
+    Weight {
+        landmark: u32,
+        weight: f64,
+    },
     /// Paints weights of attraction on the source; one edit from the first dab to the one that is `done`.
     Paint(Dab),
     /// Forgets the weights.

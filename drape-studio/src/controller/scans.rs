@@ -56,6 +56,7 @@ impl Controller {
     /// Another source or target is open.
     fn show_inputs(&mut self) {
         self.dragged_from = None;
+        self.drawing = None;
         self.shown_bvh = None;
         self.warnings.clear();
         self.notice = None;

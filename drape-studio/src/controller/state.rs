@@ -12,7 +12,8 @@ impl Controller {
         let (document, situation) = (&self.session.document, self.situation());
         let numbers = numbers(&document.marks);
         let marks = document.marks.iter().zip(numbers);
-        let marks: Vec<Value> = marks.map(|(m, number)| self.mark(m, number)).collect();
+        let points = marks.filter(|(mark, _)| mark.curve.is_none());
+        let marks: Vec<Value> = points.map(|(m, number)| self.mark(m, number)).collect();
         json!({
             "type": "state",
             "revision": self.revision,
@@ -20,6 +21,8 @@ impl Controller {
             "source": self.source_state(),
             "target": self.target_state(),
             "landmarks": marks,
+            "curves": self.curves_state(),
+            "drawing": self.drawing_state(),
             "marks": fingerprint(&self.landmarks()),
             "warnings": self.warnings,
             "preview_error": self.preview_error,
@@ -99,6 +102,7 @@ impl Controller {
             "name": mark.name,
             "source": mark.source,
             "target": place,
+            "weight": mark.weight,
             "kind": match mark.kind { MarkKind::Soft => "soft", MarkKind::Rigid => "rigid" },
         })
     }

@@ -10,7 +10,7 @@ const SCRIPT: &str = "text/javascript; charset=utf-8";
 const SVG: &str = "image/svg+xml";
 
 /// Name, type and text of every file.
-const FILES: [(&str, &str, &str); 30] = [
+const FILES: [(&str, &str, &str); 32] = [
     ("index.html", HTML, include_str!("../../assets/index.html")),
     ("style.css", CSS, include_str!("../../assets/style.css")),
     ("icon.svg", SVG, include_str!("../../assets/icon.svg")),
@@ -47,6 +47,12 @@ const FILES: [(&str, &str, &str); 30] = [
         include_str!("../../assets/colours.js"),
     ),
     ("brush.js", SCRIPT, include_str!("../../assets/brush.js")),
+    (
+        "weights.js",
+        SCRIPT,
+        include_str!("../../assets/weights.js"),
+    ),
+    ("curves.js", SCRIPT, include_str!("../../assets/curves.js")),
     ("cursor.js", SCRIPT, include_str!("../../assets/cursor.js")),
     ("files.js", SCRIPT, include_str!("../../assets/files.js")),
     ("paint.js", SCRIPT, include_str!("../../assets/paint.js")),

@@ -127,7 +127,7 @@ impl Work {
     /// The landmarks that are complete.
     fn landmarks(&self) -> String {
         let (source, target) = (&self.shapes.source, &self.shapes.target);
-        let complete = landmarks(&self.session.document.marks);
+        let complete = landmarks(&self.session.document.marks, &self.shapes.source);
         write(&complete, source, target, Form::Json).text
     }
 
@@ -146,10 +146,14 @@ impl Work {
     fn replayed(&self) -> Result<Replayed> {
         let (log, shown) = (self.log(), self.shown()?);
         let preset = Preset::from_toml(&log.settings)?;
-        let start = self.shapes.pair(landmarks(&log.landmarks));
+        let start = self
+            .shapes
+            .pair(landmarks(&log.landmarks, &self.shapes.source));
         Ok(Replayed {
             initial: initial_deformation(&start, preset.initial)?.positions,
-            pair: self.shapes.pair(landmarks(log.last_landmarks())),
+            pair: self
+                .shapes
+                .pair(landmarks(log.last_landmarks(), &self.shapes.source)),
             preset,
             draped: shown.positions.as_ref().clone(),
             network: shown.provenance.as_ref().and_then(|p| p.network.clone()),

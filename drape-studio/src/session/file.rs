@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{anyhow, ensure, Context as _};
 use mesh_core::io::write_atomic;
+use mesh_draping::landmarks::MAX_WEIGHT;
 use mesh_draping::plain_words;
 use serde::{Deserialize, Serialize};
 
@@ -133,7 +134,7 @@ impl Session {
             .map(|d| &d.marks)
             .chain(runs)
             .flatten()
-            .filter_map(|m| m.source);
+            .flat_map(Mark::source_places);
         for vertex in places.flat_map(|place| place.vertices) {
             ensure!(
                 (vertex as usize) < n_vertices,
@@ -151,9 +152,14 @@ fn check_sum(session: &serde_json::Value) -> anyhow::Result<String> {
 }
 
 fn is_finite(mark: &Mark) -> bool {
-    let weights = mark.source.iter().flat_map(|s| s.weights);
-    let target = mark.target.iter().flatten().copied();
-    weights.chain(target).all(f64::is_finite)
+    let weights = mark.source_places().flat_map(|s| s.weights);
+    let line = mark
+        .curve
+        .iter()
+        .flat_map(|lines| lines.target.iter().flatten());
+    let target = mark.target.iter().flatten().chain(line).copied();
+    let is_in_range = (0.0..=MAX_WEIGHT).contains(&mark.weight);
+    is_in_range && weights.chain(target).all(f64::is_finite)
 }
 
 #[cfg(test)]
@@ -173,6 +179,8 @@ mod tests {
             }),
             target: Some([f64::MIN_POSITIVE, -0.0, 1e300]),
             kind: MarkKind::Rigid,
+            weight: 0.1 + 0.2,
+            curve: None,
         };
         let parts = Parts {
             free: vec!["bag".to_owned()],

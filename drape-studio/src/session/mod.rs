@@ -8,7 +8,7 @@ mod mark;
 pub(crate) use file::{fnv1a, read, InputRecord};
 pub(crate) use kept::{Kept, NamedSettings};
 pub(crate) use log::{Change, Event, RunLog};
-pub(crate) use mark::{fingerprint, landmarks, numbers, Mark, MarkKind, SourcePlace};
+pub(crate) use mark::{fingerprint, landmarks, numbers, Lines, Mark, MarkKind, SourcePlace};
 
 use serde::{Deserialize, Serialize};
 
@@ -134,7 +134,7 @@ impl Session {
         id
     }
 
-    /// Another target comes: the landmarks wait in order for their places on it.
+    /// Another target comes: the landmarks wait in order for their places on it; curves are drawn anew.
     pub(crate) fn wait_for_target(&mut self) {
         let marks = &mut self.document.marks;
         marks.retain(|mark| mark.source.is_some());
@@ -142,7 +142,7 @@ impl Session {
         self.forget_edits();
     }
 
-    /// Another source comes: the landmarks wait in order for their places on it.
+    /// Another source comes: the landmarks wait in order for their places on it; curves are drawn anew.
     pub(crate) fn wait_for_source(&mut self) {
         let marks = &mut self.document.marks;
         marks.retain(|mark| mark.target.is_some());
@@ -171,11 +171,8 @@ mod tests {
 
     fn mark(id: u32) -> Mark {
         Mark {
-            id,
-            name: String::new(),
-            source: None,
             target: Some([f64::from(id); 3]),
-            kind: MarkKind::Soft,
+            ..Mark::empty(id)
         }
     }
 

@@ -61,7 +61,7 @@ pub fn read_wrap(
     let pairs = paired(on_source, on_target).map_err(|problem| of_file(files.target, problem))?;
     let fans = Fans::of(source, target);
     let landmark = |(index, pair): (usize, (Point, Point))| {
-        let place = LandmarkPlace::Landmark(Label::new(index, pair.0.name.as_deref()));
+        let place = LandmarkPlace::Entry(Label::new(index, pair.0.name.as_deref()));
         fans.entry(pair)
             .and_then(|entry| entry.resolve(source, target.vertices()))
             .map_err(|problem| problem.at(place))
@@ -69,7 +69,8 @@ pub fn read_wrap(
     pairs.into_iter().enumerate().map(landmark).collect()
 }
 
-/// Landmarks as the texts of two point files: by name where all have one of their own, else lists.
+/// Landmarks as the texts of two point files: by name where all have one of their own, else lists. These files hold neither
+/// weights nor curves: see [`Lost`](super::Lost).
 ///
 /// # Errors
 /// A shape without triangles.
@@ -80,9 +81,7 @@ pub fn write_wrap(
 ) -> Result<WrapPoints<String>, LandmarkError> {
     let fans = Fans::of(source, target);
     let rest = source.rest();
-    let places = landmarks
-        .iter()
-        .map(|l| (l.source.position(rest), l.target));
+    let places = Landmark::marked(landmarks).map(|l| (l.source.position(rest), l.target));
     let (on_source, on_target): (Vec<Point3>, Vec<Point3>) = places.unzip();
     let names = names(landmarks);
     let text = |fan: &Fan, points: &[Point3]| {
@@ -196,6 +195,7 @@ impl Fans {
             source: SourcePlace::Face { face, weights },
             target: TargetPlace::Point(self.target.position(&on_target)?),
             kind: LandmarkKind::Soft,
+            weight: 1.0,
         })
     }
 }

@@ -2,7 +2,7 @@
 
 mod trial;
 
-use mesh_core::{Positions, UnitFrame};
+use mesh_core::{Landmark, Positions, UnitFrame};
 use mesh_init::{
     fit_affine, point_pairs, FramePair, Guide, GuideConfig, GuideInput, InitError, SimilarityPrior,
 };
@@ -60,7 +60,7 @@ impl Start {
     /// # Errors
     /// As [`adjusted`].
     pub(crate) fn of_shape(pair: &Pair, preset: &Preset, shape: &Positions) -> Result<Self, Error> {
-        let positions = if pair.landmarks.is_empty() {
+        let positions = if pair.n_followed() == 0 {
             shape.clone()
         } else {
             adjusted(pair, shape)?
@@ -106,7 +106,7 @@ impl Start {
         let best = led.iter().chain([&own]).min_by(cheapest).unwrap_or(&own);
         // Without landmarks a smooth map drifts, and a rigid body is none to it.
         let can_lead = preset.initial == InitialMethod::Tried
-            && pair.landmarks.len() >= ENOUGH_TO_STAND
+            && pair.n_followed() >= ENOUGH_TO_STAND
             && regions.is_none();
         let guided = (can_lead && cost(&best) > POOR)
             .then(|| Trial::guided(&stand_in.pair, preset, &regions, &best.start));
@@ -129,14 +129,15 @@ struct Tried {
 
 /// Shapes of the stand-in that are led along the surfaces.
 fn led(pair: &Pair, stand_in: &StandIn) -> Vec<Positions> {
-    if pair.landmarks.len() < ENOUGH_TO_STAND {
+    if pair.n_followed() < ENOUGH_TO_STAND {
         return Vec::new();
     }
     let rest = stand_in.pick(&similar(pair));
+    let landmarks = Landmark::followed(&stand_in.pair.landmarks);
     let guide = Guide::new(GuideInput {
         triangulation: stand_in.pair.source.triangulation(),
         rest: &rest,
-        landmarks: &stand_in.pair.landmarks,
+        landmarks: &landmarks,
         target: pair.target.draped_over().as_ref(),
     });
     let Ok(guide) = guide else {

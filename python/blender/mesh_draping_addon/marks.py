@@ -1,7 +1,7 @@
 """Landmarks as empties: NAME.source on the source, NAME.target on the target, both in one collection.
 
 An empty that stands for a vertex keeps its row; one that was moved by hand since, or set by hand, counts where it is. Empties
-are children of their object and follow it.
+are children of their object and follow it. The weight of a pair is a property of the empty on the source.
 """
 
 import json
@@ -85,20 +85,31 @@ def entries(settings) -> "list[dict]":
             "name": name,
             "source": place(settings.source, pair["source"]),
             "target": place(settings.target, pair["target"]),
+            **weight(pair["source"]),
         }
         for name, pair in sorted(sides.items())
         if len(pair) == 2
     ]
 
 
-def put_entries(settings, found: "list[dict]") -> None:
-    """Marks the places of a landmark file that was read for source and target."""
-    for k, entry in enumerate(found):
+def weight(empty) -> dict:
+    """What a pair counts, as a landmark file has it: nothing where that is 1."""
+    known = empty.get("weight", 1.0)
+    return {} if known == 1.0 else {"weight": known}
+
+
+def put_entries(settings, found: "list[dict]") -> int:
+    """Marks the places of a landmark file that was read for source and target; how many curves it had, which are passed over."""
+    points = [entry for entry in found if "curve" not in entry]
+    for k, entry in enumerate(points):
         name = entry.get("name") or f"mark {k}"
         for side, thing in (("source", settings.source), ("target", settings.target)):
             at = entry[side]
             row = at.get("vertex")
-            put(settings, name, side, _local(thing, at), row)
+            empty = put(settings, name, side, _local(thing, at), row)
+            if side == "source":
+                empty["weight"] = float(entry.get("weight", 1.0))
+    return len(found) - len(points)
 
 
 def _local(thing, at: dict) -> Vector:

@@ -101,7 +101,9 @@ class DRAPE_OT_read_marks(WithPair, bpy.types.Operator, ImportHelper):
         settings = settings_of(context)
         try:
             pair = md.Source(settings.source), transfer.target(settings.target)
-            marks.put_entries(settings, md.landmarks.read(self.filepath, *pair))
+            n_curves = marks.put_entries(settings, md.landmarks.read(self.filepath, *pair))
+            if n_curves > 0:
+                self.report({"WARNING"}, f"{n_curves} curves are left out: marks are empties, which are places")
         except md.Error as error:
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}

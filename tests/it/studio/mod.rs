@@ -4,6 +4,7 @@ mod access;
 mod big;
 mod browser;
 mod budget;
+mod curves;
 mod defects;
 mod discard;
 mod going_on;
