@@ -19,8 +19,18 @@ use mesh_render::bake::{Bake, Depth, Paint, Texture};
 const SIZE: usize = 512;
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let individual = Individual::drawn(Plan::Head, 1, Dial { angle: 20.0, ratio: 1.3 });
-    let config = PairConfig { n_landmarks: 12, ..PairConfig::standard() };
+    let individual = Individual::drawn(
+        Plan::Head,
+        1,
+        Dial {
+            angle: 20.0,
+            ratio: 1.3,
+        },
+    );
+    let config = PairConfig {
+        n_landmarks: 12,
+        ..PairConfig::standard()
+    };
     let pair = CreaturePair::new(&Individual::template(Plan::Head), &individual, &config);
     let file = MeshFile::from_bytes("source.obj", pair.source.to_obj().into_bytes())?;
     let source = Source::of_file(file, Seams::EXACT)?;
@@ -29,13 +39,18 @@ fn main() -> Result<(), Box<dyn Error>> {
     let paint = Paint::of_file(&painted)?;
     let target = Target::of_file(painted)?;
 
-    let marks = landmarks::parse(&pair.landmarks_json(), &source, &target)?;
-    let draped = Transfer::new(&source, &target, &marks, Preset::quick()).run()?.draped;
+    let marks = landmarks::parse(&pair.landmarks_json(), None, &source, target.vertices())?;
+    let draped = Transfer::new(&source, &target, &marks, Preset::quick())
+        .run()?
+        .draped;
     let right = right(&source)?;
     for (name, shape) in [("where it truly belongs", &truth), ("draped", &draped)] {
         let bake = Bake::new(&source, shape, &target, SIZE)?;
         let texture = bake.colors(&paint)?;
-        println!("{name}: mean error of a colour {:.4} of 1", error(&texture, &right));
+        println!(
+            "{name}: mean error of a colour {:.4} of 1",
+            error(&texture, &right)
+        );
         if let (Some(path), true) = (std::env::args().nth(1), name == "draped") {
             texture.save(&path, Depth::Eight)?;
             println!("wrote {path}");
@@ -66,7 +81,11 @@ fn paint_at(rest: &Point3, source: &Source) -> [f64; 3] {
     let bounds = source.bounds();
     let at = (rest - bounds.min) / bounds.longest_side();
     let stripe = |x: f64| 0.5 + 0.45 * (14.0 * x).sin();
-    [stripe(at.x + 0.4 * at.y), stripe(at.y), stripe(at.z - 0.3 * at.x)]
+    [
+        stripe(at.x + 0.4 * at.y),
+        stripe(at.y),
+        stripe(at.z - 0.3 * at.x),
+    ]
 }
 
 /// A PLY file with a colour at each vertex.
@@ -115,7 +134,11 @@ fn right(source: &Source) -> Result<Texture<3>, Box<dyn Error>> {
 
 /// The mean difference of a sample.
 fn error(found: &Texture<3>, right: &Texture<3>) -> f64 {
-    let pairs = found.texels().as_flattened().iter().zip(right.texels().as_flattened());
+    let pairs = found
+        .texels()
+        .as_flattened()
+        .iter()
+        .zip(right.texels().as_flattened());
     let total: f64 = pairs.map(|(a, b)| f64::from((a - b).abs())).sum();
     total / found.texels().as_flattened().len() as f64
 }

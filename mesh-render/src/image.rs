@@ -125,7 +125,11 @@ impl Image {
     /// A picture without a pixel.
     pub fn to_png(&self) -> Result<Vec<u8>, RenderError> {
         let samples = (png::ColorType::Rgba, png::BitDepth::Eight);
-        encode_png([self.width, self.height], samples, self.pixels.as_flattened())
+        encode_png(
+            [self.width, self.height],
+            samples,
+            self.pixels.as_flattened(),
+        )
     }
 
     /// Writes a PNG file on a light background.

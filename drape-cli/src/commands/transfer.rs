@@ -11,8 +11,8 @@ use mesh_draping::{Outcome, Stages, Transfer};
 use mesh_render::{Gallery, Image, Page, View, DISTANCE_AT_TOP};
 
 use crate::args::{
-    read_truth, say_beside, wrote, Inputs, MorphArgs, PartArgs, PipeArgs, SettingsArgs, ViewArgs,
-    WeldArgs,
+    bake, check_bakeable, check_maps, read_truth, say_beside, wrote, BakeArgs, Inputs, MorphArgs,
+    PartArgs, PipeArgs, SettingsArgs, ViewArgs, WeldArgs,
 };
 use crate::output::{check_distinct, check_writable, warn};
 use crate::profile::{self, ProfileArgs};
@@ -61,6 +61,8 @@ pub(crate) struct Args {
     /// Make the result as symmetric as the source is
     #[arg(long)]
     pub(super) symmetric: bool,
+    #[command(flatten)]
+    pub(super) bake: BakeArgs,
     /// Save the map, for `drape apply`
     #[arg(long, value_name = "WARP")]
     pub(super) warp: Option<PathBuf>,
@@ -111,6 +113,7 @@ pub(super) fn drape_files(args: &Args) -> anyhow::Result<Done<'_>> {
     let start = start
         .map(|path| read_truth(path, &pair.source))
         .transpose()?;
+    check_bakeable(&args.bake.maps(), &pair.source, &args.target)?;
     let mut warnings = words::about_inputs(&pair);
     if let Some(file) = pair.source.file() {
         warnings.extend(
@@ -139,7 +142,7 @@ pub(super) fn drape_files(args: &Args) -> anyhow::Result<Done<'_>> {
     warn(&notes);
     warnings.extend(notes);
     let mut stages = std::mem::take(&mut outcome.stages);
-    let done = Done {
+    let mut done = Done {
         args,
         truth,
         warnings,
@@ -148,6 +151,9 @@ pub(super) fn drape_files(args: &Args) -> anyhow::Result<Done<'_>> {
         outcome,
     };
     stages.time("writing", || done.write())?;
+    let baked = stages.time("baking", || done.bake())?;
+    warn(&baked);
+    done.warnings.extend(baked);
     done.tell(&watch, &stages)?;
     Ok(done)
 }
@@ -183,7 +189,7 @@ fn check_outputs(args: &Args) -> anyhow::Result<()> {
         check_writable(path)?;
         check_distinct(path, &inputs)?;
     }
-    Ok(())
+    check_maps(&args.bake.maps(), &args.target, &inputs)
 }
 
 /// A finished run and what it was asked for.
@@ -213,6 +219,14 @@ impl Done<'_> {
             write_atomic(path, self.page()?.as_bytes())?;
         }
         Ok(())
+    }
+
+    /// Bakes the maps that were asked for; what is worth knowing about them.
+    fn bake(&self) -> anyhow::Result<Vec<String>> {
+        let Self { args, outcome, .. } = self;
+        let (source, target) = (&outcome.pair.source, &outcome.pair.target);
+        let maps = args.bake.maps();
+        bake(&maps, (source, &outcome.draped), target, &args.target)
     }
 
     fn gallery(&self, size: usize) -> anyhow::Result<Gallery<'_>> {
@@ -305,7 +319,9 @@ impl Done<'_> {
             args.render.as_ref(),
             args.report.as_ref(),
         ];
-        let written = outputs.into_iter().flatten().map(|path| wrote(path));
+        let maps = args.bake.maps();
+        let written = outputs.into_iter().flatten().map(PathBuf::as_path);
+        let written = written.chain(maps.paths()).map(wrote);
         let written: String = written.collect();
         let seams = words::seams(&run.pair.source);
         let seams = seams.map_or_else(String::new, |words| format!("{words}\n"));

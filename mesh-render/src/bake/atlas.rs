@@ -64,7 +64,11 @@ fn uvs(source: &Source) -> Result<Vec<Option<Flat>>, BakeError> {
     let of_corners = file.looks().corner_uvs.ok_or(BakeError::NoUvs)?;
     let faces = &file.soup().faces;
     let triangulation = source.triangulation();
-    let vertex = |row: &u32| source.vertex_at(*row as usize).map_or(u32::MAX, |v| v.index() as u32);
+    let vertex = |row: &u32| {
+        source
+            .vertex_at(*row as usize)
+            .map_or(u32::MAX, |v| v.index() as u32)
+    };
     let of_face = |f: usize| {
         let welded: Vec<u32> = faces[f].iter().map(vertex).collect();
         let triangles = triangulation.face_triangles(FaceId::new(f));
@@ -75,7 +79,10 @@ fn uvs(source: &Source) -> Result<Vec<Option<Flat>>, BakeError> {
                 let [a, b, c] = corners_in_face(&welded, vertices)?;
                 let at = |k: u32| uvs.get(k as usize).copied().flatten();
                 let flat = [at(a)?, at(b)?, at(c)?];
-                flat.as_flattened().iter().all(|c| c.is_finite()).then_some(flat)
+                flat.as_flattened()
+                    .iter()
+                    .all(|c| c.is_finite())
+                    .then_some(flat)
             })
             .collect::<Vec<_>>()
     };

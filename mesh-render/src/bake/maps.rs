@@ -5,7 +5,7 @@ use std::path::Path;
 use mesh_core::Positions;
 use mesh_draping::{Source, Target};
 
-use super::{Bake, BakeError, BakeFinding, Depth, Paint};
+use super::{check_size, Bake, BakeError, BakeFinding, Depth, Paint};
 
 /// The maps to bake, each where a path is given.
 #[derive(Clone, Copy, Debug)]
@@ -27,6 +27,20 @@ impl Maps<'_> {
     pub fn paths(&self) -> impl Iterator<Item = &Path> {
         let all = [self.colors, self.normals, self.displacement];
         all.into_iter().flatten()
+    }
+
+    /// Whether these maps can be baked, to know before a long run.
+    ///
+    /// # Errors
+    /// What [`Self::write`] would say whatever the positions.
+    pub fn check(&self, source: &Source, painted: &Path) -> Result<(), BakeError> {
+        check_size(self.size)?;
+        let has_uvs = source.file().is_some_and(|file| file.contents().has_uvs());
+        if !has_uvs {
+            return Err(BakeError::NoUvs);
+        }
+        self.colors.map(|_| Paint::read(painted)).transpose()?;
+        Ok(())
     }
 
     /// Bakes and writes the maps of a source that lies at `draped`; `painted` is the file of the target with its colours.

@@ -70,10 +70,7 @@ impl Bake {
         target: &Target,
         size: usize,
     ) -> Result<Self, BakeError> {
-        let [least, most] = SIZES;
-        if !(least..=most).contains(&size) {
-            return Err(BakeError::Size { size, least, most });
-        }
+        check_size(size)?;
         let Atlas {
             texels,
             mut findings,
@@ -165,6 +162,15 @@ impl Bake {
     }
 }
 
+/// Refuses a side that no map can have.
+fn check_size(size: usize) -> Result<(), BakeError> {
+    let [least, most] = SIZES;
+    match (least..=most).contains(&size) {
+        true => Ok(()),
+        false => Err(BakeError::Size { size, least, most }),
+    }
+}
+
 /// A draped source.
 struct Draped<'a> {
     source: &'a Source,
@@ -187,3 +193,6 @@ impl Draped<'_> {
         (Point3::from(point), normal.unwrap_or_default())
     }
 }
+
+#[cfg(test)]
+mod tests;

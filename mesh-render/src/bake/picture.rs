@@ -49,10 +49,7 @@ impl DecodedPicture {
     /// The colour at texture coordinates, (0, 0) at the lower left: between the four nearest pixels, each axis weighted by
     /// distance. Beyond the unit square the picture repeats.
     pub(super) fn at(&self, [u, v]: [f64; 2]) -> Rgb {
-        let (x, y) = (
-            self.place(u, self.width),
-            self.place(1.0 - v, self.height),
-        );
+        let (x, y) = (self.place(u, self.width), self.place(1.0 - v, self.height));
         let row = |y: usize| mixed(self.pixel(x.low, y), self.pixel(x.high, y), x.share);
         mixed(row(y.low), row(y.high), y.share)
     }
@@ -131,7 +128,9 @@ fn of_jpeg(bytes: &[u8]) -> Result<DecodedPicture, PictureError> {
         .map_err(|error| PictureError::Broken(error.to_string()))?;
     let (width, height) = decoder.dimensions().ok_or(PictureError::Empty)?;
     if data.len() != 3 * width * height {
-        return Err(PictureError::Broken("not in red, green and blue".to_owned()));
+        return Err(PictureError::Broken(
+            "not in red, green and blue".to_owned(),
+        ));
     }
     Ok(DecodedPicture {
         width,

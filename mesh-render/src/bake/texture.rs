@@ -95,7 +95,10 @@ impl<const N: usize> Texture<N> {
             }
             Depth::Sixteen => {
                 let word = |c: &f32| ((c.clamp(0.0, 1.0) * 65535.0).round() as u16).to_be_bytes();
-                (png::BitDepth::Sixteen, samples.flat_map(word).collect::<Vec<u8>>())
+                (
+                    png::BitDepth::Sixteen,
+                    samples.flat_map(word).collect::<Vec<u8>>(),
+                )
             }
         };
         encode_png([self.size; 2], (color, bits), &data)
@@ -136,6 +139,9 @@ mod tests {
         let picture = super::super::picture::DecodedPicture::decode(&bytes).unwrap();
         // The centre of the texel at the lower left.
         let found = picture.at([0.25, 0.25]);
-        assert!((found[0] - 0.5).abs() < 1e-4 && (found[1] - 0.5).abs() < 1e-4, "{found:?}");
+        assert!(
+            (found[0] - 0.5).abs() < 1e-4 && (found[1] - 0.5).abs() < 1e-4,
+            "{found:?}"
+        );
     }
 }
