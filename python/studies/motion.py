@@ -32,10 +32,12 @@ def main():
         print(f"{args.plan}, {args.frames} frames, {args.angle:g} degrees, preset {args.preset}, {truth.shape[1]} vertices")
         print("                              truth %   jitter %   CPU-s a frame")
         every, first = "marks/{target}.json", "first/{target}.json"
+        led = told(args, "sequence", truth, every, ["--sequence"])
+        freed = told(args, "sequence, first marked", truth, first, ["--sequence"])
         alone = told(args, "frame by frame", truth, every, [])
-        for name, marks in (("sequence", every), ("sequence, first marked", first)):
-            led = told(args, name, truth, marks, ["--sequence"])
-            print("    of frame by frame       " + "  ".join(f"{b / a:8.2f}" for a, b in zip(alone, led)))
+        for name, figures in (("sequence", led), ("sequence, first marked", freed)):
+            shares = "  ".join(f"{b / a:9.2f}" for a, b in zip(alone, figures))
+            print(f"{name + ', of the last':34}{shares}")
 
 
 def write_frames(args):
@@ -77,7 +79,7 @@ def told(args, name, truth, marks, options):
     jitter = 100 * np.linalg.norm(error[2:] - 2 * error[1:-1] + error[:-2], axis=2).mean()
     # The first frame of a sequence is a drape like any other.
     seconds = float(np.mean([row["figures"]["cpu_seconds"] for row in rows[1:]]))
-    print(f"{name:26}  {off:8.3f}   {jitter:8.3f}   {seconds:8.2f}", flush=True)
+    print(f"{name:28}{off:9.3f}  {jitter:9.3f}  {seconds:14.2f}", flush=True)
     return off, jitter, seconds
 
 

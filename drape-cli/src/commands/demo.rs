@@ -29,6 +29,7 @@ pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let name = |name: &str| args.output.join(name);
     let transfer = transfer::Args {
         from: None,
+        prior: None,
         symmetric: false,
         bake: BakeArgs::none(),
         profile: ProfileArgs { profile: false },
