@@ -170,11 +170,11 @@ class Outcome:
     def carry(self, displacements: _Rows) -> _Rows: ...
     def bake(
         self,
-        maps: tuple[_Path | None, _Path | None, _Path | None],
+        maps: Sequence[Optional[_Path]],
         size: int,
         depth: int,
-        painted: _Path | None,
-    ) -> list[str]: ...
+        painted: Optional[_Path],
+    ) -> List[str]: ...
     def warp(self) -> Warp: ...
 
 @final

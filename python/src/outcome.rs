@@ -108,11 +108,12 @@ impl Outcome {
     fn bake(
         &self,
         py: Python<'_>,
-        [colors, normals, displacement]: [Option<PathBuf>; 3],
+        maps: [Option<PathBuf>; 3],
         size: usize,
         depth: u8,
         painted: Option<PathBuf>,
     ) -> PyResult<Vec<String>> {
+        let [colors, normals, displacement] = maps;
         let depth = match depth {
             8 => Depth::Eight,
             16 => Depth::Sixteen,
