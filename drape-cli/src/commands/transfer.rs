@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
+use anyhow::ensure;
 use mesh_core::io::write_atomic;
 use mesh_core::Positions;
 use mesh_draping::mesh_metrics::Report;
@@ -59,7 +60,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "FILE")]
     pub(super) from: Option<PathBuf>,
     /// Start from the shape that fits best of those that the results in this folder span: their mean and the modes in which
-    /// they differ. No start is searched, and the run is a third as long
+    /// they differ, fitted to three landmarks or more. No start is searched, and the run is a third as long
     #[arg(long, value_name = "FOLDER", conflicts_with = "from")]
     pub(super) prior: Option<PathBuf>,
     /// Make the result as symmetric as the source is
@@ -84,6 +85,9 @@ pub(crate) struct Args {
 const REPORT_PICTURE: usize = 440;
 /// Pixels along the side of a picture in a PNG file.
 const PNG_PICTURE: usize = 420;
+
+/// Landmarks without which a population does not find a target.
+const LEAST_FOR_PRIOR: usize = 3;
 
 pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let figures = drape_files(args)?.figures();
@@ -162,6 +166,10 @@ pub(super) fn drape_files(args: &Args) -> anyhow::Result<Done<'_>> {
 /// The shape to start from, where one is given.
 fn start(args: &Args, pair: &Pair) -> anyhow::Result<Option<Positions>> {
     if let Some(folder) = &args.prior {
+        ensure!(
+            pair.landmarks.len() >= LEAST_FOR_PRIOR,
+            "--prior needs {LEAST_FOR_PRIOR} landmarks or more to find where the target stands"
+        );
         let population = read_population(folder, &pair.source)?;
         return Ok(Some(population.fit(pair)));
     }
