@@ -244,13 +244,13 @@ mod tests {
     fn population() -> Population {
         let eggs = [(1.0, 1.0), (1.4, 1.0), (1.0, 1.3), (1.4, 1.3), (1.2, 0.8)];
         let shapes = eggs.map(|(y, z)| Positions::from(egg(y, z).positions));
-        Population::of(&shapes).unwrap()
+        Population::of(&shapes).expect("five shapes")
     }
 
     fn pair(y: f64, z: f64) -> Pair {
         Pair {
-            source: Source::of_soup(shapes::quad_sphere(6), Seams::EXACT).unwrap(),
-            target: Target::of_soup(egg(y, z)).unwrap(),
+            source: Source::of_soup(shapes::quad_sphere(6), Seams::EXACT).expect("a mesh"),
+            target: Target::of_soup(egg(y, z)).expect("a target"),
             landmarks: Vec::new(),
         }
     }

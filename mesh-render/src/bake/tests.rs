@@ -29,8 +29,8 @@ fn source(shift: f64) -> Source {
         let corners = face.iter().map(|v| format!(" {0}/{0}", v + 1));
         let _ = writeln!(obj, "f{}", corners.collect::<String>());
     }
-    let file = MeshFile::from_bytes("source.obj", obj.into_bytes()).unwrap();
-    Source::of_file(file, Seams::EXACT).unwrap()
+    let file = MeshFile::from_bytes("source.obj", obj.into_bytes()).expect("an OBJ file");
+    Source::of_file(file, Seams::EXACT).expect("a mesh")
 }
 
 /// A larger sheet at a height, whose colours are its places: red is x, green is y; with one face turned over or all.
@@ -48,12 +48,12 @@ fn sheet(height: f64, is_turned: bool) -> MeshFile {
     } else {
         "4 0 1 2 3\n"
     };
-    MeshFile::from_bytes("target.ply", ply.into_bytes()).unwrap()
+    MeshFile::from_bytes("target.ply", ply.into_bytes()).expect("a PLY file")
 }
 
 fn bake(source: &Source, file: &MeshFile) -> Bake {
-    let target = Target::of_file(file.clone()).unwrap();
-    Bake::new(source, source.rest(), &target, SIZE).unwrap()
+    let target = Target::of_file(file.clone()).expect("a target");
+    Bake::new(source, source.rest(), &target, SIZE).expect("maps")
 }
 
 #[test]
