@@ -113,10 +113,7 @@ pub(super) fn drape_files(args: &Args) -> anyhow::Result<Done<'_>> {
     };
     let mut pair = stages.time("reading", || inputs.read())?;
     pair.source = pair.source.with_morphs(args.morphs.morphs.into());
-    let truth = args.truth.as_deref();
-    let truth = truth
-        .map(|path| read_truth(path, &pair.source))
-        .transpose()?;
+    let truth = read_shape(args.truth.as_deref(), &pair)?;
     let start = stages.time("start", || start(args, &pair))?;
     check_bakeable(&args.bake.maps(), &pair.source, &args.target)?;
     let mut warnings = words::about_inputs(&pair);
@@ -173,8 +170,12 @@ fn start(args: &Args, pair: &Pair) -> anyhow::Result<Option<Positions>> {
         let population = read_population(folder, &pair.source)?;
         return Ok(Some(population.fit(pair)));
     }
-    let from = args.from.as_deref();
-    from.map(|path| read_truth(path, &pair.source)).transpose()
+    read_shape(args.from.as_deref(), pair)
+}
+
+/// A shape of the source in a file, where one is given.
+fn read_shape(path: Option<&Path>, pair: &Pair) -> anyhow::Result<Option<Positions>> {
+    path.map(|path| read_truth(path, &pair.source)).transpose()
 }
 
 /// Drapes and shows it.
