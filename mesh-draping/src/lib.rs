@@ -22,6 +22,7 @@
 //! | drape | [`Transfer::run`] |
 //! | drape step by step, pause, change landmarks, resume | [`Transfer::start`], [`Draping`] |
 //! | start from a shape that nearly fits | [`Transfer::with_start`] |
+//! | start from what shapes of a population have in common | [`Population`] |
 //! | get a result as symmetric as the source | [`Transfer::symmetric`] |
 //! | drape on a thread of its own | [`Draping::spawn`], [`Background`] |
 //! | use the result | [`Outcome`] |
@@ -44,6 +45,7 @@ mod outcome;
 mod pair;
 pub mod parts;
 mod plain;
+mod population;
 pub mod preset;
 mod seams;
 mod similarity;
@@ -66,6 +68,7 @@ pub use outcome::Outcome;
 pub use pair::Pair;
 pub use parts::{Parts, Treatment};
 pub use plain::plain_words;
+pub use population::Population;
 pub use preset::Preset;
 pub use seams::{Seams, SeamsError};
 pub use similarity::Similarity;

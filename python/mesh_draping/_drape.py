@@ -249,6 +249,27 @@ class Result:
         """Displacements from the rest shape, such as those of shape keys, shape (n, 3), taken to the result."""
         return self._native.carry(rows(displacements))
 
+    def bake(
+        self,
+        colors: Optional[Path] = None,
+        *,
+        normal: Optional[Path] = None,
+        displacement: Optional[Path] = None,
+        size: int = 2048,
+        depth: int = 8,
+        painted: Optional[Path] = None,
+    ) -> "list[str]":
+        """Bakes the target's picture and colours into the source's texture coordinates, as a PNG file; what is worth knowing
+        about it, in words.
+
+        ``normal``: a PNG file for the target's normals, in the coordinates of the result (object space).
+        ``displacement``: a PNG file for how far the target lies out of the result, with 16 bits: the middle is nothing; what
+        white and black mean is among the words that come back.
+        ``size``: texels along a side. ``depth``: 8 or 16 bits a sample of colours and normals.
+        ``painted``: the target's file with its colours, where the target was not read from one.
+        """
+        return self._native.bake((colors, normal, displacement), size, depth, painted)
+
     def warp(self) -> Warp:
         """What the drape did to space, to do it to other points."""
         return Warp(self._native.warp())

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use mesh_draping::mesh_core::Point3;
 use mesh_draping::mesh_metrics::Report;
 use mesh_draping::{initial_deformation, Preset};
+use mesh_render::bake::{Depth, Maps};
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 use serde_json::json;
@@ -101,6 +102,42 @@ impl Outcome {
         let carried = py.detach(|| source.carry(draped, &given));
         let points: Vec<Point3> = carried.into_iter().map(Point3::from).collect();
         arrays::of_points(py, &points)
+    }
+
+    /// Bakes the target's colours, normals and relief into the source's texture coordinates; what is worth knowing, in words.
+    fn bake(
+        &self,
+        py: Python<'_>,
+        maps: [Option<PathBuf>; 3],
+        size: usize,
+        depth: u8,
+        painted: Option<PathBuf>,
+    ) -> PyResult<Vec<String>> {
+        let [colors, normals, displacement] = maps;
+        let depth = match depth {
+            8 => Depth::Eight,
+            16 => Depth::Sixteen,
+            _ => return Err(Error::new_err(format!("depth {depth}: use 8 or 16"))),
+        };
+        let run = &self.0;
+        let (source, target) = (&run.pair.source, &run.pair.target);
+        let painted = painted.or_else(|| target.path().map(PathBuf::from));
+        let maps = Maps {
+            colors: colors.as_deref(),
+            normals: normals.as_deref(),
+            displacement: displacement.as_deref(),
+            size,
+            depth,
+        };
+        if maps.colors.is_some() && painted.is_none() {
+            return Err(Error::new_err(
+                "the target was given as arrays, without colours; name its file as painted",
+            ));
+        }
+        let painted = painted.unwrap_or_default();
+        let baked = py.detach(|| maps.write((source, &run.draped), target, &painted));
+        let findings = baked.map_err(|error| Error::new_err(error.to_string()))?;
+        Ok(findings.iter().map(ToString::to_string).collect())
     }
 
     /// What the drape did to space.

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import trimesh
 
 import mesh_draping as md
 from conftest import drape_command
@@ -90,3 +91,19 @@ def test_the_command_is_installed(folder, tmp_path):
     line = ["batch", "source.obj", "target.ply", "-l", "landmarks.json", "-o", tmp_path / "{target}.obj"]
     drape_command(*line, "--config", "short.toml", "--summary", tmp_path / "s", cwd=folder)
     assert (tmp_path / "s/index.html").is_file() and (tmp_path / "target.obj").is_file()
+
+
+def test_colours_normals_and_relief_are_baked(result, folder, tmp_path):
+    target = trimesh.load(folder / "target.ply", process=False)
+    target.visual.vertex_colors = np.tile([200, 100, 50, 255], (len(target.vertices), 1))
+    target.export(tmp_path / "painted.ply")
+    maps = [tmp_path / name for name in ("colours.png", "normals.png", "relief.png")]
+    told = result.bake(
+        maps[0], normal=maps[1], displacement=maps[2], size=64, depth=16, painted=tmp_path / "painted.ply"
+    )
+    assert any(words.startswith("displacement: white is") for words in told)
+    # Width, height, bits and samples: red, green and blue, or grey.
+    heads = [path.read_bytes()[16:26] for path in maps]
+    assert heads == [bytes([0, 0, 0, 64, 0, 0, 0, 64, 16, samples]) for samples in (2, 2, 0)]
+    with pytest.raises(md.Error, match="neither colours"):
+        result.bake(maps[0])

@@ -45,6 +45,10 @@ pub(crate) struct Args {
     /// may lack from the second frame on
     #[arg(long, conflicts_with_all = ["shard", "jobs"])]
     sequence: bool,
+    /// Start every drape from the shape that fits best of those that the results in this folder span; not a folder that
+    /// this batch writes to
+    #[arg(long, value_name = "FOLDER", conflicts_with = "sequence")]
+    prior: Option<PathBuf>,
 }
 
 pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
@@ -99,6 +103,11 @@ fn tasks(args: &Args) -> anyhow::Result<Vec<Task>> {
     ];
     options.extend(option("initial", settings.initial));
     options.extend(option("overlap", settings.overlap));
+    options.extend(
+        args.prior
+            .iter()
+            .map(|p| format!("--prior={}", p.display())),
+    );
     let mut tasks: Vec<Task> = Vec::new();
     for target in &args.targets {
         let named = |pattern: &str| PathBuf::from(fill(pattern, &args.source, target));
@@ -116,6 +125,7 @@ fn tasks(args: &Args) -> anyhow::Result<Vec<Task>> {
                 .with_context(|| format!("{}: the folder cannot be made", folder.display()))?;
         }
         check_mesh(&output)?;
+        check_not_prior(&output, args.prior.as_deref())?;
         check_distinct(&output, &[&args.source, target])?;
         tasks.push(Task {
             pair: Pair {
@@ -142,6 +152,23 @@ fn tasks(args: &Args) -> anyhow::Result<Vec<Task>> {
         });
     }
     Ok(tasks)
+}
+
+/// Refuses a prior that would grow while the batch runs: results would depend on their order.
+fn check_not_prior(output: &Path, prior: Option<&Path>) -> anyhow::Result<()> {
+    let (Some(folder), Some(prior)) = (output.parent(), prior) else {
+        return Ok(());
+    };
+    let is_same = match (folder.canonicalize(), prior.canonicalize()) {
+        (Ok(folder), Ok(prior)) => folder == prior,
+        _ => false,
+    };
+    ensure!(
+        !is_same,
+        "{}: the results of this batch cannot be their own prior; name another folder",
+        prior.display()
+    );
+    Ok(())
 }
 
 /// An option of the command line with the name of its value, where it is given.
