@@ -162,16 +162,11 @@ impl Fitted {
             pull.mean + moved.sum::<Vector3>()
         };
         let pairs = |c: &DVector<f64>| -> Vec<PointPair> {
-            let pair = |pull: &&Pull| PointPair {
-                source: place(pull, c),
-                target: pull.to,
-            };
+            let pair = |pull: &&Pull| PointPair::new(place(pull, c), pull.to);
             pulls.iter().map(pair).collect()
         };
-        let back = pairs(&self.coefficients).into_iter().map(|p| PointPair {
-            source: p.target,
-            target: p.source,
-        });
+        let pairs_now = pairs(&self.coefficients).into_iter();
+        let back = pairs_now.map(|p| PointPair::new(p.target, p.source));
         let back = Similarity::fit(&back.collect::<Vec<_>>());
 
         let n = self.coefficients.len();
@@ -197,7 +192,7 @@ impl Fitted {
 fn overlay(shape: &Positions, other: &Positions) -> Similarity {
     assert_eq!(shape.len(), other.len(), "shapes of one source");
     let pairs = shape.iter().zip(other.iter());
-    let pair = |(&source, &target)| PointPair { source, target };
+    let pair = |(&source, &target)| PointPair::new(source, target);
     Similarity::fit(&pairs.map(pair).collect::<Vec<_>>())
 }
 
