@@ -13,6 +13,7 @@ import { Memory } from "./memory.js";
 import { Painter } from "./painter.js";
 import { Panels } from "./panels.js";
 import { Parts } from "./parts.js";
+import { Sculpt } from "./sculpt.js";
 import { Strip } from "./strip.js";
 import { Stage } from "./stage.js";
 import { Views } from "./views.js";
@@ -45,6 +46,8 @@ class App {
     this.panels = new Panels(this);
     this.strip = new Strip(this);
     this.brush = new Brush(this);
+    this.sculpt = new Sculpt(this);
+    this.tools = [this.brush, this.sculpt];
     this.cursor = new Cursor(this);
     this.words = new Words(this);
     this.chart = new Chart($("chart"));
@@ -122,6 +125,7 @@ class App {
     this.parts.show(state);
     this.strip.show(state);
     this.brush.show(state);
+    this.sculpt.show(state);
     showScans(this, state.scans);
     this.panels.showProgress(this.progress, state);
     this.panels.showFigures(this.figures, state);
@@ -193,9 +197,10 @@ class App {
     if (waiting.length > 1) this.choose(waiting[0].id);
   }
 
-  // Gives up the pair that is half made; else nothing is chosen any more.
+  // Puts the cross or the brush down; gives up the pair that is half made; else nothing is chosen any more.
   escape() {
     if (this.cursor.isShown) return void this.cursor.hide();
+    if (this.sculpt.brush) return void this.sculpt.choose(null);
     const waiting = this.landmarks.filter((l) => !l.source || !l.target);
     if (waiting.length === 1) {
       this.edit("delete", { landmark: waiting[0].id });

@@ -1,17 +1,19 @@
 // Weights of attraction, painted on the source or on the result.
 
+import { Ring } from "./ring.js";
+
 const $ = (id) => document.getElementById(id);
 
 export class Brush {
   constructor(app) {
     this.app = app;
     [this.isOn, this.pointer, this.asked, this.weights, this.key] = [false, null, Promise.resolve(), null, null];
-    this.ring = Object.assign(document.createElement("div"), { className: "brush-ring", hidden: true });
+    this.ring = new Ring();
     $("brush").addEventListener("click", () => this.toggle());
     $("clear-weights").addEventListener("click", () => app.edit("clear_weights"));
-    for (const { element } of app.views.list) {
-      element.addEventListener("pointermove", (event) => this.follow(element, event));
-      element.addEventListener("pointerleave", () => (this.ring.hidden = true));
+    for (const view of app.views.list) {
+      view.element.addEventListener("pointermove", (event) => this.follow(view, event));
+      view.element.addEventListener("pointerleave", () => this.ring.hide());
     }
   }
 
@@ -19,7 +21,8 @@ export class Brush {
     this.isOn = !this.isOn;
     $("brush").setAttribute("aria-pressed", String(this.isOn));
     $("brush-controls").hidden = !this.isOn;
-    this.ring.hidden = true;
+    this.ring.hide();
+    if (this.isOn) this.app.sculpt.choose(null);
     if (this.isOn) return void this.fetch();
     this.app.views.source.shape?.colour(null, false);
     this.app.parts.colour();
@@ -90,14 +93,8 @@ export class Brush {
     return this.asked;
   }
 
-  // A ring as large as the brush, around the pointer.
-  follow(element, event) {
-    const view = this.app.views.list.find((other) => other.element === element);
-    this.ring.hidden = !this.isOn || view.name === "target" || !view.shape;
-    if (this.ring.hidden) return;
-    const { left, top } = element.getBoundingClientRect();
-    const size = 2 * view.camera.pixels(Number($("brush-size").value), view.box.width, view.box.height);
-    element.append(this.ring);
-    Object.assign(this.ring.style, { left: `${event.clientX - left}px`, top: `${event.clientY - top}px`, width: `${size}px`, height: `${size}px` });
+  follow(view, event) {
+    if (this.isOn && view.name !== "target" && view.shape) this.ring.follow(view, event, Number($("brush-size").value));
+    else this.ring.hide();
   }
 }

@@ -93,7 +93,7 @@ export const control = (app) => {
     m: () => $("mirror").click(), escape: () => app.escape(), k: press("keep"),
     home: () => cameras.home(), f: () => cameras.frameChosen(), l: () => $("linked").click(), a: () => cameras.align(), u: () => cameras.toggleUp(),
     ...Object.fromEntries(Object.entries({ 1: "front", 2: "back", 3: "right", 4: "left", 7: "top", 8: "bottom" }).map(([key, side]) => [key, () => cameras.look(...SIDES[side])])),
-    5: () => setFlat(app, !app.preferences.flat), b: press("brush"), x: () => cameras.enlarge(cameras.focused),
+    5: () => setFlat(app, !app.preferences.flat), b: press("brush"), g: () => app.state?.can.brush && app.sculpt.next(), x: () => cameras.enlarge(cameras.focused),
     enter: () => app.cursor.enter(),
     ...arrows(app),
     "+": camera((c) => c.zoom(0.8)), "=": camera((c) => c.zoom(0.8)), "-": camera((c) => c.zoom(1.25)),

@@ -21,6 +21,7 @@
 //! | treat parts in their own way | [`Parts`], [`parts`] |
 //! | drape | [`Transfer::run`] |
 //! | drape step by step, pause, change landmarks, resume | [`Transfer::start`], [`Draping`] |
+//! | relax, pull or slide a place of the result by hand | [`Stroke`], [`Draping::brush`] |
 //! | start from a shape that nearly fits | [`Transfer::with_start`] |
 //! | get a result as symmetric as the source | [`Transfer::symmetric`] |
 //! | drape on a thread of its own | [`Draping::spawn`], [`Background`] |
@@ -32,6 +33,7 @@
 //! left out or repaired comes back as values: [`Note`], [`landmarks::Finding`], [`Explanation`].
 
 mod background;
+mod brush;
 mod draping;
 mod ending;
 mod error;
@@ -56,6 +58,7 @@ mod target;
 mod transfer;
 
 pub use background::{Background, BackgroundStatus};
+pub use brush::{Brush, BrushInput, Moves, Stroke};
 pub use draping::{adjusted, Draping};
 pub use error::{Error, MeshProblem};
 pub use explain::{Advice, Explanation, PlaceKind, RegionDistances, WorstPlace};

@@ -15,7 +15,7 @@ const MAX_NAME: usize = 80;
 impl Controller {
     /// Makes an edit; the number of the landmark where a place is marked.
     pub(super) fn make(&mut self, edit: Edit) -> Result<Value> {
-        if !matches!(edit, Edit::Drag { .. } | Edit::Paint(_)) {
+        if !matches!(edit, Edit::Drag { .. } | Edit::Paint(_) | Edit::Brush(_)) {
             self.finish_drag();
         }
         match edit {
@@ -36,6 +36,7 @@ impl Controller {
             }
             Edit::Kind { landmark, kind } => self.change_mark(landmark, |m| m.kind = kind)?,
             Edit::Paint(dab) => return self.paint(&dab),
+            Edit::Brush(dab) => return self.brush(&dab),
             Edit::ClearWeights => self.session.edit(|d| d.parts.weights = None),
             Edit::Clear => {
                 self.situation().check(Action::Clear)?;
@@ -99,6 +100,7 @@ impl Controller {
         if self.dragged_from.is_none() {
             self.pass_on();
         }
+        self.order_strokes();
         self.ask_preview();
         self.changed();
     }

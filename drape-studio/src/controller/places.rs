@@ -182,6 +182,7 @@ impl Controller {
     pub(super) fn finish_drag(&mut self) {
         // Whoever painted has been told by then why a stroke cannot be; it is forgotten.
         drop(self.finish_stroke());
+        self.finish_brushing();
         if let Some(before) = self.dragged_from.take() {
             if before != self.session.document {
                 self.session.remember(before);

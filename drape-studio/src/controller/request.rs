@@ -1,7 +1,7 @@
 //! What a page may ask for: a query changes nothing, an edit changes the document and can be undone, a command drives
 //! the drape.
 
-use mesh_draping::Treatment;
+use mesh_draping::{Brush, Treatment};
 use serde::{Deserialize, Serialize};
 
 use crate::pick::Ray;
@@ -74,6 +74,18 @@ impl Dab {
     }
 }
 
+/// One touch of a brush on the result.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct BrushDab {
+    pub(crate) brush: Brush,
+    pub(crate) ray: Option<Ray>,
+    /// In longest sides of the target's box.
+    pub(crate) radius: f64,
+    pub(crate) strength: f64,
+    pub(crate) done: bool,
+}
+
 /// A change of landmarks, parts or settings.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(tag = "do", rename_all = "snake_case", deny_unknown_fields)]
@@ -103,6 +115,8 @@ pub(crate) enum Edit {
     },
     /// Paints weights of attraction on the source; one edit from the first dab to the one that is `done`.
     Paint(Dab),
+    /// Brushes the result; one edit from the first dab to the one that is `done`.
+    Brush(BrushDab),
     /// Forgets the weights.
     ClearWeights,
     /// Deletes all landmarks.

@@ -26,6 +26,7 @@ impl Controller {
             "notice": self.notice,
             "mirror": document.mirror,
             "parts": document.parts,
+            "strokes": document.n_strokes,
             "inner": self.inner_state(),
             "settings": {
                 "preset": self.preset.name,

@@ -3,6 +3,7 @@
 mod access;
 mod big;
 mod browser;
+mod brushing;
 mod budget;
 mod defects;
 mod discard;
