@@ -1,4 +1,4 @@
-// Weights of attraction, painted on the source or on the result.
+// Weights of attraction and rigid places, painted on the source or on the result.
 
 import { Ring } from "./ring.js";
 
@@ -11,6 +11,8 @@ export class Brush {
     this.ring = new Ring();
     $("brush").addEventListener("click", () => this.toggle());
     $("clear-weights").addEventListener("click", () => app.edit("clear_weights"));
+    $("clear-rigid").addEventListener("click", () => app.edit("clear_rigid"));
+    $("brush-weight").addEventListener("change", () => this.isOn && this.fetch());
     for (const view of app.views.list) {
       view.element.addEventListener("pointermove", (event) => this.follow(view, event));
       view.element.addEventListener("pointerleave", () => this.ring.hide());
@@ -29,11 +31,18 @@ export class Brush {
     this.app.painter.invalidate(this.app.views.source);
   }
 
+  // What is painted, and with which weight.
+  get paint() {
+    const [weight, layer] = $("brush-weight").value.split(" ");
+    return { weight: Number(weight), layer: layer ?? "weights" };
+  }
+
   // The weights as the studio tells them; those of a stroke that goes on are newer.
-  show({ parts, source }) {
+  show({ parts, source, painted_rigid: rigid }) {
     $("clear-weights").hidden = !parts.weights;
+    $("clear-rigid").hidden = !rigid;
     $("brush").disabled = !this.app.state.can.export;
-    const key = `${source?.hash} ${parts.weights}`;
+    const key = `${source?.hash} ${parts.weights} ${rigid}`;
     if (key === this.key) return;
     this.key = key;
     if (this.isOn && this.pointer === null) this.fetch();
@@ -42,8 +51,10 @@ export class Brush {
   async fetch() {
     const { source } = this.app.views;
     if (!source.shape) return;
-    const weights = await this.app.query("weights");
-    this.weights = Float32Array.from(weights ?? new Array(source.shape.positions.length / 3).fill(1));
+    const { layer } = this.paint;
+    const weights = await this.app.query(layer);
+    if (!source.shape || layer !== this.paint.layer) return;
+    this.weights = Float32Array.from(weights ?? new Array(source.shape.positions.length / 3).fill(layer === "rigid" ? 0 : 1));
     this.colour();
   }
 
@@ -82,7 +93,7 @@ export class Brush {
 
   dab(view, ray, done) {
     this.isAsking = true;
-    const more = { weight: Number($("brush-weight").value), strength: Number($("brush-strength").value), radius: Number($("brush-size").value), done };
+    const more = { ...this.paint, strength: Number($("brush-strength").value), radius: Number($("brush-size").value), done };
     this.asked = this.app.edit("paint", { shape: view.name, ray, ...more }).then((changed) => {
       this.isAsking = false;
       if (!changed) return this.fetch();

@@ -6,6 +6,7 @@ use mesh_draping::Preset;
 use serde_json::Value;
 
 use super::can::Action;
+use super::paint::forget_rigid;
 use super::{Controller, Edit};
 use crate::session::{Mark, NamedSettings, MAX_MARKS};
 
@@ -37,6 +38,11 @@ impl Controller {
             Edit::Kind { landmark, kind } => self.change_mark(landmark, |m| m.kind = kind)?,
             Edit::Paint(dab) => return self.paint(&dab),
             Edit::Brush(dab) => return self.brush(&dab),
+            Edit::ClearRigid => {
+                let mut parts = self.session.document.parts.clone();
+                forget_rigid(&mut parts);
+                self.session.edit(|d| d.parts = parts);
+            }
             Edit::ClearWeights => self.session.edit(|d| d.parts.weights = None),
             Edit::Clear => {
                 self.situation().check(Action::Clear)?;

@@ -49,6 +49,19 @@ pub(crate) enum Query {
     Curves,
     /// The weights of attraction, one per vertex.
     Weights,
+    /// What is painted rigid, one number per vertex: 1 where it is.
+    Rigid,
+}
+
+/// What is painted on the source.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub(crate) enum Layer {
+    /// How strongly it is attracted.
+    #[default]
+    Weights,
+    /// What moves as one body: where the weight is 1.
+    Rigid,
 }
 
 /// One touch of the brush.
@@ -60,6 +73,8 @@ pub(crate) struct Dab {
     pub(crate) ray: Option<Ray>,
     /// In longest sides of the source's box.
     pub(crate) radius: f64,
+    #[serde(default)]
+    pub(crate) layer: Layer,
     /// What the weights go to, and how far with this dab; 0..=1.
     pub(crate) weight: f64,
     pub(crate) strength: f64,
@@ -113,12 +128,14 @@ pub(crate) enum Edit {
         landmark: u32,
         kind: MarkKind,
     },
-    /// Paints weights of attraction on the source; one edit from the first dab to the one that is `done`.
+    /// Paints weights of attraction on the source, or what is rigid; one edit from the first dab to the one that is `done`.
     Paint(Dab),
     /// Brushes the result; one edit from the first dab to the one that is `done`.
     Brush(BrushDab),
     /// Forgets the weights.
     ClearWeights,
+    /// Forgets what is painted rigid.
+    ClearRigid,
     /// Deletes all landmarks.
     Clear,
     /// Axes of source and target across which landmarks are placed twice.

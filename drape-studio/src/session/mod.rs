@@ -4,11 +4,13 @@ mod file;
 mod kept;
 mod log;
 mod mark;
+mod painted;
 mod strokes;
 
 pub(crate) use file::{fnv1a, read, InputRecord};
 pub(crate) use kept::{Kept, NamedSettings};
 pub(crate) use log::{Change, Event, RunLog};
+pub(crate) use painted::{painted_rigid, RIGID_FOLDER};
 pub(crate) use mark::{fingerprint, landmarks, numbers, Mark, MarkKind, SourcePlace};
 
 use serde::{Deserialize, Serialize};
