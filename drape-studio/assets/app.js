@@ -9,6 +9,7 @@ import { Cursor } from "./cursor.js";
 import { Files, showScans } from "./files.js";
 import { Hover } from "./hover.js";
 import { Link } from "./link.js";
+import { Loupe } from "./loupe.js";
 import { Memory } from "./memory.js";
 import { Painter } from "./painter.js";
 import { Panels } from "./panels.js";
@@ -49,6 +50,7 @@ class App {
     this.sculpt = new Sculpt(this);
     this.tools = [this.brush, this.sculpt];
     this.cursor = new Cursor(this);
+    this.loupe = new Loupe(this);
     this.words = new Words(this);
     this.chart = new Chart($("chart"));
     this.dress();
@@ -181,7 +183,7 @@ class App {
   async place(view, ray) {
     if (!this.state) return;
     try {
-      const answer = await this.link.ask("edit", { do: "place", shape: view.name, ray });
+      const answer = await this.link.ask("edit", { do: "place", shape: view.name, ray, snap: this.snap });
       if (!answer) this.words.note("The click missed: nothing is there");
       this.choose(answer ? answer.landmark : null);
       this.chooseNext();
@@ -209,6 +211,11 @@ class App {
     this.choose(null);
   }
 
+  // What places that are marked snap to; null where they stay as they are.
+  get snap() {
+    return $("snap").value || null;
+  }
+
   // Rays of a drag go one after the other; those that come meanwhile are passed over, but the last.
   async drag(view, landmark, ray, done) {
     if (this.dragging) {
@@ -216,7 +223,7 @@ class App {
       return;
     }
     this.dragging = { next: null };
-    await this.edit("drag", { landmark, shape: view.name, ray, done });
+    await this.edit("drag", { landmark, shape: view.name, ray, done, snap: this.snap });
     const { next } = this.dragging;
     this.dragging = null;
     if (next) this.drag(...next);

@@ -90,7 +90,7 @@ export const control = (app) => {
     delete: remove, backspace: remove,
     f2: () => app.panels.rename(app.chosen),
     r: () => withChosen(app, "kind", (l) => ({ kind: l.kind === "soft" ? "rigid" : "soft" })),
-    m: () => $("mirror").click(), escape: () => app.escape(), k: press("keep"),
+    m: () => $("mirror").click(), s: () => ($("snap").selectedIndex = ($("snap").selectedIndex + 1) % $("snap").length), escape: () => app.escape(), k: press("keep"),
     home: () => cameras.home(), f: () => cameras.frameChosen(), l: () => $("linked").click(), a: () => cameras.align(), u: () => cameras.toggleUp(),
     ...Object.fromEntries(Object.entries({ 1: "front", 2: "back", 3: "right", 4: "left", 7: "top", 8: "bottom" }).map(([key, side]) => [key, () => cameras.look(...SIDES[side])])),
     5: () => setFlat(app, !app.preferences.flat), b: press("brush"), g: () => app.state?.can.brush && app.sculpt.next(), x: () => cameras.enlarge(cameras.focused),

@@ -89,7 +89,10 @@ class View {
     if (pointer.isClick) return;
     const before = this.pinch();
     [pointer.x, pointer.y] = [event.clientX, event.clientY];
-    if (pointer.landmark !== null) return void this.app.drag(this, pointer.landmark, this.ray(event), false);
+    if (pointer.landmark !== null) {
+      this.app.loupe.show(this, pointer.landmark, event);
+      return void this.app.drag(this, pointer.landmark, this.ray(event), false);
+    }
     this.element.classList.add("is-turning");
     const after = this.pinch();
     if (before && after) {
@@ -125,6 +128,7 @@ class View {
     this.element.classList.remove("is-turning");
     if (!pointer) return;
     if (pointer.landmark !== null && !pointer.isClick) {
+      this.app.loupe.hide();
       this.app.drag(this, pointer.landmark, isMeant ? this.ray(event) : null, true);
     } else if (pointer.isClick && isMeant && pointer.button === 0 && pointer.landmark === null) {
       this.app.place(this, this.ray(event));

@@ -22,6 +22,7 @@
 //! | drape | [`Transfer::run`] |
 //! | drape step by step, pause, change landmarks, resume | [`Transfer::start`], [`Draping`] |
 //! | relax, pull or slide a place of the result by hand | [`Stroke`], [`Draping::brush`] |
+//! | snap a place to a vertex, or to the most curved one | [`SnapPoints`] |
 //! | start from a shape that nearly fits | [`Transfer::with_start`] |
 //! | get a result as symmetric as the source | [`Transfer::symmetric`] |
 //! | drape on a thread of its own | [`Draping::spawn`], [`Background`] |
@@ -49,6 +50,7 @@ mod plain;
 pub mod preset;
 mod seams;
 mod similarity;
+mod snap;
 mod source;
 mod stages;
 mod stand_in;
@@ -72,6 +74,7 @@ pub use plain::plain_words;
 pub use preset::Preset;
 pub use seams::{Seams, SeamsError};
 pub use similarity::Similarity;
+pub use snap::{SnapPoints, SNAP_REACH};
 pub use source::{GatheredPositions, Source};
 pub use stages::{Stages, DRAPING, REFINING};
 pub use target::Target;

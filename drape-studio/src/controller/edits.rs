@@ -20,13 +20,17 @@ impl Controller {
             self.finish_drag();
         }
         match edit {
-            Edit::Place { shape, ray } => return self.place(shape, &ray),
+            Edit::Place { shape, ray, snap } => return self.place(shape, &ray, snap),
             Edit::Drag {
                 landmark,
                 shape,
                 ray,
                 done,
-            } => self.drag(landmark, shape, ray.as_ref(), done)?,
+                snap,
+            } => {
+                let to = ray.and_then(|ray| self.pick_snapped(shape, &ray, snap));
+                self.drag(landmark, to, done)?;
+            }
             Edit::Delete { landmark } => {
                 self.find(landmark)?;
                 self.session.edit(|d| d.marks.retain(|m| m.id != landmark));

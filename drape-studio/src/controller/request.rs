@@ -17,6 +17,16 @@ pub(crate) enum Shape {
     Result,
 }
 
+/// What a place that is marked goes to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub(crate) enum Snap {
+    /// The nearest vertex.
+    Vertex,
+    /// The most curved vertex of its surroundings.
+    Curvature,
+}
+
 /// One request, by its kind: `{"edit": {"do": "delete", "landmark": 3}}`, `{"command": "pause"}`.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(rename_all = "lowercase")]
@@ -109,6 +119,8 @@ pub(crate) enum Edit {
     Place {
         shape: Shape,
         ray: Ray,
+        #[serde(default)]
+        snap: Option<Snap>,
     },
     /// Moves a landmark on one shape; one edit from the first ray to the one that is `done`.
     Drag {
@@ -116,6 +128,8 @@ pub(crate) enum Edit {
         shape: Shape,
         ray: Option<Ray>,
         done: bool,
+        #[serde(default)]
+        snap: Option<Snap>,
     },
     Delete {
         landmark: u32,
