@@ -11,6 +11,7 @@ mod going_on;
 mod history;
 mod inputs;
 mod looks;
+mod marks;
 mod page;
 mod painting;
 mod pictures;
