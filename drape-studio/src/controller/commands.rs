@@ -61,6 +61,7 @@ impl Controller {
             iteration: 0,
         };
         self.leave_run();
+        self.session.begin_strokes(Vec::new());
         self.broadcast.forget_drape();
         self.start_runner(log, None)
     }

@@ -42,11 +42,7 @@ impl Controller {
             Edit::Kind { landmark, kind } => self.change_mark(landmark, |m| m.kind = kind)?,
             Edit::Paint(dab) => return self.paint(&dab),
             Edit::Brush(dab) => return self.brush(&dab),
-            Edit::ClearRigid => {
-                let mut parts = self.session.document.parts.clone();
-                forget_rigid(&mut parts);
-                self.session.edit(|d| d.parts = parts);
-            }
+            Edit::ClearRigid => self.session.edit(|d| forget_rigid(&mut d.parts)),
             Edit::ClearWeights => self.session.edit(|d| d.parts.weights = None),
             Edit::Clear => {
                 self.situation().check(Action::Clear)?;

@@ -1,6 +1,7 @@
 //! Towards the target.
 
-use mesh_core::{vertex_normals, NormalSign, Positions};
+use mesh_core::measure::vertex_normals;
+use mesh_core::{NormalSign, Positions};
 
 use super::ball::Ball;
 use crate::Pair;
