@@ -68,7 +68,10 @@ impl SnapPoints {
     /// a scan hardly matters. Source: Pottmann et al. 2009, integral invariants, with a mean for the volume.
     pub fn most_curved(&self, place: &Point3, radius: f64) -> Option<usize> {
         let within = |row: &usize, reach: f64| (self.points[*row] - place).norm() < reach;
-        let around: Vec<usize> = self.rows().filter(|row| within(row, 2.0 * radius)).collect();
+        let around: Vec<usize> = self
+            .rows()
+            .filter(|row| within(row, 2.0 * radius))
+            .collect();
         let near = around.iter().copied().filter(|row| within(row, radius));
         let curved = near.map(|row| (row, self.curvature(row, &around, radius)));
         let most = curved.max_by(|a, b| a.1.total_cmp(&b.1).then(b.0.cmp(&a.0)));
@@ -118,14 +121,19 @@ mod tests {
         for place in [[14.0, 24.0, 1.0], [11.0, 27.5, 0.5], [12.0, 25.0, 3.0]] {
             let row = points.most_curved(&Point3::from(place), 4.0);
             let at = points.point(row.unwrap()).unwrap();
-            assert!((at.xy() - nalgebra::Point2::new(12.0, 25.0)).norm() < 1.5, "{at}");
+            assert!(
+                (at.xy() - nalgebra::Point2::new(12.0, 25.0)).norm() < 1.5,
+                "{at}"
+            );
         }
     }
 
     #[test]
     fn open_ends_are_not_curved() {
         let points = bumpy();
-        let row = points.most_curved(&Point3::new(1.5, 1.5, 0.0), 3.0).unwrap();
+        let row = points
+            .most_curved(&Point3::new(1.5, 1.5, 0.0), 3.0)
+            .unwrap();
         let around: Vec<usize> = points.rows().collect();
         assert!(points.curvature(row, &around, 3.0) < 0.1);
     }

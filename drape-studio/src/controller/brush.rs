@@ -85,8 +85,7 @@ impl Controller {
         let input = BrushInput { pair: &pair, held };
         stroke.apply_place(input, positions, stroke.path.len() - 1);
         let shown = Arc::new(positions.clone());
-        self.broadcast
-            .show(&displayed, ShownKind::Adjusted, shown);
+        self.broadcast.show(&displayed, ShownKind::Adjusted, shown);
         Ok(())
     }
 

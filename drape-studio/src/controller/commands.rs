@@ -66,11 +66,7 @@ impl Controller {
         self.start_runner(log, None)
     }
 
-    pub(super) fn start_runner(
-        &mut self,
-        log: RunLog,
-        saved: Option<SavedRun>,
-    ) -> Result<()> {
+    pub(super) fn start_runner(&mut self, log: RunLog, saved: Option<SavedRun>) -> Result<()> {
         let displayed = self.displayed.clone().context(OPEN_FIRST)?;
         let n_more = Draping::n_more(&Preset::from_toml(&log.settings)?);
         self.n_runs += 1;

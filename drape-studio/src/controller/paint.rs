@@ -147,7 +147,10 @@ impl Controller {
         let rigid = painted_rigid(parts).cloned();
         let only = Parts {
             weights: parts.weights.clone().filter(|_| layer == Layer::Weights),
-            rigid: rigid.into_iter().filter(|_| layer == Layer::Rigid).collect(),
+            rigid: rigid
+                .into_iter()
+                .filter(|_| layer == Layer::Rigid)
+                .collect(),
             is_hidden_draped: true,
             ..Parts::default()
         };

@@ -75,12 +75,7 @@ impl Controller {
     }
 
     /// Completes the newest landmark, moves its only side, or begins another one.
-    pub(super) fn place(
-        &mut self,
-        shape: Shape,
-        ray: &Ray,
-        snap: Option<Snap>,
-    ) -> Result<Value> {
+    pub(super) fn place(&mut self, shape: Shape, ray: &Ray, snap: Option<Snap>) -> Result<Value> {
         let Some(place) = self.pick_snapped(shape, ray, snap) else {
             return Ok(Value::Null);
         };

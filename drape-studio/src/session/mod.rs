@@ -10,8 +10,8 @@ mod strokes;
 pub(crate) use file::{fnv1a, read, InputRecord};
 pub(crate) use kept::{Kept, NamedSettings};
 pub(crate) use log::{Change, Event, RunLog};
-pub(crate) use painted::{painted_rigid, RIGID_FOLDER};
 pub(crate) use mark::{fingerprint, landmarks, numbers, Mark, MarkKind, SourcePlace};
+pub(crate) use painted::{painted_rigid, RIGID_FOLDER};
 
 use serde::{Deserialize, Serialize};
 

@@ -74,7 +74,10 @@ fn relaxing_leaves_a_turned_rest_shape_and_smooths_a_rough_one() {
     let [rough, relaxed] = [&before, &after].map(|x| mean(&smooth, |v| strain(x, v), TIP, 0.7));
     assert!(relaxed < 0.3 * rough, "{rough} {relaxed}");
     let far = |v: VertexId| (before[v] - Point3::from(TIP)).norm() > 1.5;
-    assert!(before.ids().filter(|&v| far(v)).all(|v| before[v] == after[v]));
+    assert!(before
+        .ids()
+        .filter(|&v| far(v))
+        .all(|v| before[v] == after[v]));
 }
 
 #[test]
@@ -109,7 +112,10 @@ fn sliding_follows_the_brush_and_stays_on_the_target() {
     assert!(along > 0.3, "{along}");
     // A touch that goes nowhere does nothing.
     let still = brushed(&pair, &stroke(Brush::Slide, &[TIP]), &before);
-    assert!(still.iter().zip(&before).all(|(a, b)| (a - b).norm() < 1e-12));
+    assert!(still
+        .iter()
+        .zip(&before)
+        .all(|(a, b)| (a - b).norm() < 1e-12));
 }
 
 #[test]

@@ -88,7 +88,10 @@ fn a_brushed_result_replays_to_the_same_bits() {
     // The strokes of a drape that is left are no steps to undo.
     wire.ask(json!({ "command": "reset" }));
     let state = wire.state(|s| s["run"]["status"] == "none");
-    assert_eq!((&state["strokes"], &state["can"]["undo"]), (&json!(0), &json!(false)));
+    assert_eq!(
+        (&state["strokes"], &state["can"]["undo"]),
+        (&json!(0), &json!(false))
+    );
 }
 
 #[test]
@@ -107,7 +110,9 @@ fn the_result_is_brushed_with_the_pointer() {
         page.wait(&format!("studio.sculpt.brush === '{brush}'"));
         let look = page.value("[studio.views.result.camera.yaw, studio.state.landmarks.length]");
         page.drag([x - 30.0, y + 10.0], [x + 40.0, y - 20.0]);
-        page.wait(&format!("studio.state.strokes === {n} && studio.shown.kind === 1"));
+        page.wait(&format!(
+            "studio.state.strokes === {n} && studio.shown.kind === 1"
+        ));
         let after = page.value("[studio.views.result.camera.yaw, studio.state.landmarks.length]");
         assert_eq!(after, look, "the camera turned, or a landmark was marked");
     }
@@ -116,13 +121,16 @@ fn the_result_is_brushed_with_the_pointer() {
         page.press("#undo");
         page.wait(&format!("studio.state.strokes === {n}"));
     }
-    let apart = format!("Math.max(...studio.shown.positions.map((c, k) => Math.abs(c - {before}[k])))");
+    let apart =
+        format!("Math.max(...studio.shown.positions.map((c, k) => Math.abs(c - {before}[k])))");
     page.wait(&format!("{apart} < 1e-5"));
     // The keyboard takes the brushes in hand, too, and puts them down.
     page.key("Escape", 27, 0);
     page.wait("studio.sculpt.brush === null");
     page.key("g", 71, 0);
-    page.wait("studio.sculpt.brush === 'relax' && !document.getElementById('sculpt-controls').hidden");
+    page.wait(
+        "studio.sculpt.brush === 'relax' && !document.getElementById('sculpt-controls').hidden",
+    );
     page.key("b", 66, 0);
     page.wait("studio.sculpt.brush === null && studio.brush.isOn");
 }

@@ -51,9 +51,16 @@ fn png([red, green, blue]: [u8; 3]) -> Vec<u8> {
     let side = 4_u32;
     let row = [vec![0], [red, green, blue].repeat(side as usize)].concat();
     let mut packed = ZlibEncoder::new(Vec::new(), Compression::fast());
-    packed.write_all(&row.repeat(side as usize)).expect("bytes are packed");
+    packed
+        .write_all(&row.repeat(side as usize))
+        .expect("bytes are packed");
     let packed = packed.finish().expect("bytes are packed");
-    let header = [&side.to_be_bytes()[..], &side.to_be_bytes(), &[8, 2, 0, 0, 0]].concat();
+    let header = [
+        &side.to_be_bytes()[..],
+        &side.to_be_bytes(),
+        &[8, 2, 0, 0, 0],
+    ]
+    .concat();
     let mut bytes = b"\x89PNG\r\n\x1a\n".to_vec();
     for (name, content) in [(b"IHDR", header), (b"IDAT", packed), (b"IEND", Vec::new())] {
         bytes.extend((content.len() as u32).to_be_bytes());
@@ -69,9 +76,23 @@ fn png([red, green, blue]: [u8; 3]) -> Vec<u8> {
 /// A ball as GLB, with a picture of its base colour inside.
 fn glb(picture: &[u8]) -> Vec<u8> {
     let soup = mesh_core::shapes::icosphere(3);
-    let numbers = |all: Vec<f64>| all.iter().flat_map(|&x| (x as f32).to_le_bytes()).collect::<Vec<u8>>();
-    let positions = numbers(soup.positions.iter().flat_map(|p| [p.x, p.y, p.z]).collect());
-    let uvs = numbers(soup.positions.iter().flat_map(|p| [0.5 + 0.4 * p.x, 0.5 + 0.4 * p.y]).collect());
+    let numbers = |all: Vec<f64>| {
+        all.iter()
+            .flat_map(|&x| (x as f32).to_le_bytes())
+            .collect::<Vec<u8>>()
+    };
+    let positions = numbers(
+        soup.positions
+            .iter()
+            .flat_map(|p| [p.x, p.y, p.z])
+            .collect(),
+    );
+    let uvs = numbers(
+        soup.positions
+            .iter()
+            .flat_map(|p| [0.5 + 0.4 * p.x, 0.5 + 0.4 * p.y])
+            .collect(),
+    );
     let corners = soup.faces.iter().flatten();
     let corners: Vec<u8> = corners.flat_map(|v| v.to_le_bytes()).collect();
     let mut padded = picture.to_vec();

@@ -15,7 +15,10 @@ fn seen_marker(page: &Page, side: &str) -> (u64, [f64; 2]) {
          if (m.classList.contains('is-behind')) continue; const r = m.getBoundingClientRect(); \
          return [l.id, [Math.round(r.left + r.width / 2), Math.round(r.top + r.height / 2)]]; }} return null; }})()"
     ));
-    (found[0].as_u64().expect("a marker is seen"), point(&found[1]))
+    (
+        found[0].as_u64().expect("a marker is seen"),
+        point(&found[1]),
+    )
 }
 
 #[test]
@@ -27,7 +30,8 @@ fn a_mark_is_a_dot_with_its_number_and_a_loupe() {
     page.wait("studio.views.result.shape && studio.state.landmarks.length === 6");
     probed(&page);
     let (id, at) = seen_marker(&page, "target");
-    let digits = format!("parseFloat(getComputedStyle(studio.views.target.markers.get({id})).fontSize)");
+    let digits =
+        format!("parseFloat(getComputedStyle(studio.views.target.markers.get({id})).fontSize)");
     assert_eq!(page.value(&digits), json!(0));
     page.hover(at);
     page.wait(&format!("{digits} > 6"));
@@ -73,8 +77,10 @@ fn places_snap_to_vertices_where_that_is_asked_for() {
     assert!(!is_vertex(&mark(&mut wire, 0.11, Value::Null)));
     assert!(is_vertex(&mark(&mut wire, 0.12, json!("vertex"))));
     assert!(is_vertex(&mark(&mut wire, 0.13, json!("curvature"))));
-    let answer = wire.ask(json!({ "edit": { "do": "place", "shape": "source", "snap": "wall",
-        "ray": { "origin": [0.0, 0.0, 3.0], "direction": [0.0, 0.0, -1.0], "spread": 0.001 } } }));
+    let answer = wire.ask(
+        json!({ "edit": { "do": "place", "shape": "source", "snap": "wall",
+        "ray": { "origin": [0.0, 0.0, 3.0], "direction": [0.0, 0.0, -1.0], "spread": 0.001 } } }),
+    );
     assert!(answer["error"].is_string(), "{answer}");
 }
 
@@ -86,7 +92,9 @@ fn a_click_snaps_to_the_sharpest_place_nearby() {
     let mut soup = mesh_core::io::read_soup(place.path("target.ply")).unwrap();
     let front = |p: &mesh_core::Point3| p.z - 0.2 * (p.x - 10.0).abs() - 0.2 * p.y.abs();
     let positions = soup.positions.iter_mut();
-    let thorn = positions.max_by(|a, b| front(a).total_cmp(&front(b))).unwrap();
+    let thorn = positions
+        .max_by(|a, b| front(a).total_cmp(&front(b)))
+        .unwrap();
     thorn.z += 0.5;
     let thorn = *thorn;
     mesh_core::io::write_soup(place.path("thorn.ply"), &soup).unwrap();

@@ -95,7 +95,10 @@ fn what_is_painted_rigid_moves_as_one_body_here_and_from_the_command_line() {
     // One side is not rigid any more; undo brings it back.
     wire.ask(paint(-0.25, 0.0));
     let one = rigid(&mut wire);
-    let n = |of: &Value| of.as_array().map(|all| all.iter().filter(|r| **r == json!(1.0)).count());
+    let n = |of: &Value| {
+        of.as_array()
+            .map(|all| all.iter().filter(|r| **r == json!(1.0)).count())
+    };
     assert!(n(&one) > Some(3) && n(&both) > n(&one), "{both} {one}");
     wire.ask(json!({ "edit": { "do": "undo" } }));
     assert_eq!(rigid(&mut wire), both);
@@ -110,7 +113,9 @@ fn what_is_painted_rigid_moves_as_one_body_here_and_from_the_command_line() {
     for what in ["weights", "rigid"] {
         fs::write(place.path(&format!("{what}.txt")), download(&server, what)).unwrap();
     }
-    place.transfer("--weights weights.txt --rigid rigid.txt").well();
+    place
+        .transfer("--weights weights.txt --rigid rigid.txt")
+        .well();
     assert!(
         place.read("out.obj").as_bytes() == result,
         "the command line came to another result"
