@@ -10,10 +10,12 @@ import { Cursor } from "./cursor.js";
 import { Files, showScans } from "./files.js";
 import { Hover } from "./hover.js";
 import { Link } from "./link.js";
+import { Loupe } from "./loupe.js";
 import { Memory } from "./memory.js";
 import { Painter } from "./painter.js";
 import { Panels } from "./panels.js";
 import { Parts } from "./parts.js";
+import { Sculpt } from "./sculpt.js";
 import { Strip } from "./strip.js";
 import { Stage } from "./stage.js";
 import { Views } from "./views.js";
@@ -47,7 +49,10 @@ class App {
     this.strip = new Strip(this);
     this.brush = new Brush(this);
     this.curves = new Curves(this);
+    this.sculpt = new Sculpt(this);
+    this.tools = [this.brush, this.sculpt];
     this.cursor = new Cursor(this);
+    this.loupe = new Loupe(this);
     this.words = new Words(this);
     this.chart = new Chart($("chart"));
     this.dress();
@@ -125,6 +130,7 @@ class App {
     this.strip.show(state);
     this.brush.show(state);
     this.curves.show(state);
+    this.sculpt.show(state);
     showScans(this, state.scans);
     this.panels.showProgress(this.progress, state);
     this.panels.showFigures(this.figures, state);
@@ -181,7 +187,7 @@ class App {
     if (!this.state) return;
     if (this.curves.isOn) return void this.curves.add(view, ray);
     try {
-      const answer = await this.link.ask("edit", { do: "place", shape: view.name, ray });
+      const answer = await this.link.ask("edit", { do: "place", shape: view.name, ray, snap: this.snap });
       if (!answer) this.words.note("The click missed: nothing is there");
       this.choose(answer ? answer.landmark : null);
       this.chooseNext();
@@ -197,16 +203,22 @@ class App {
     if (waiting.length > 1) this.choose(waiting[0].id);
   }
 
-  // Gives up the pair that is half made; else nothing is chosen any more.
+  // Puts the cross or the brush down; gives up the pair that is half made; else nothing is chosen any more.
   escape() {
     if (this.cursor.isShown) return void this.cursor.hide();
     if (this.curves.cancel()) return;
+    if (this.sculpt.brush) return void this.sculpt.choose(null);
     const waiting = this.landmarks.filter((l) => !l.source || !l.target);
     if (waiting.length === 1) {
       this.edit("delete", { landmark: waiting[0].id });
       this.words.note("The half pair is gone; undo brings it back");
     }
     this.choose(null);
+  }
+
+  // What places that are marked snap to; null where they stay as they are.
+  get snap() {
+    return $("snap").value || null;
   }
 
   // Rays of a drag go one after the other; those that come meanwhile are passed over, but the last.
@@ -216,7 +228,7 @@ class App {
       return;
     }
     this.dragging = { next: null };
-    await this.edit("drag", { landmark, shape: view.name, ray, done });
+    await this.edit("drag", { landmark, shape: view.name, ray, done, snap: this.snap });
     const { next } = this.dragging;
     this.dragging = null;
     if (next) this.drag(...next);

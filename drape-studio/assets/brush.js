@@ -1,4 +1,6 @@
-// Weights of attraction, painted on the source or on the result.
+// Weights of attraction and rigid places, painted on the source or on the result.
+
+import { Ring } from "./ring.js";
 
 const $ = (id) => document.getElementById(id);
 
@@ -6,12 +8,14 @@ export class Brush {
   constructor(app) {
     this.app = app;
     [this.isOn, this.pointer, this.asked, this.weights, this.key] = [false, null, Promise.resolve(), null, null];
-    this.ring = Object.assign(document.createElement("div"), { className: "brush-ring", hidden: true });
+    this.ring = new Ring();
     $("brush").addEventListener("click", () => this.toggle());
     $("clear-weights").addEventListener("click", () => app.edit("clear_weights"));
-    for (const { element } of app.views.list) {
-      element.addEventListener("pointermove", (event) => this.follow(element, event));
-      element.addEventListener("pointerleave", () => (this.ring.hidden = true));
+    $("clear-rigid").addEventListener("click", () => app.edit("clear_rigid"));
+    $("brush-weight").addEventListener("change", () => this.isOn && this.fetch());
+    for (const view of app.views.list) {
+      view.element.addEventListener("pointermove", (event) => this.follow(view, event));
+      view.element.addEventListener("pointerleave", () => this.ring.hide());
     }
   }
 
@@ -19,18 +23,26 @@ export class Brush {
     this.isOn = !this.isOn;
     $("brush").setAttribute("aria-pressed", String(this.isOn));
     $("brush-controls").hidden = !this.isOn;
-    this.ring.hidden = true;
+    this.ring.hide();
+    if (this.isOn) this.app.sculpt.choose(null);
     if (this.isOn) return void this.fetch();
     this.app.views.source.shape?.colour(null, false);
     this.app.parts.colour();
     this.app.painter.invalidate(this.app.views.source);
   }
 
+  // What is painted, and with which weight.
+  get paint() {
+    const [weight, layer] = $("brush-weight").value.split(" ");
+    return { weight: Number(weight), layer: layer ?? "weights" };
+  }
+
   // The weights as the studio tells them; those of a stroke that goes on are newer.
-  show({ parts, source }) {
+  show({ parts, source, painted_rigid: rigid }) {
     $("clear-weights").hidden = !parts.weights;
+    $("clear-rigid").hidden = !rigid;
     $("brush").disabled = !this.app.state.can.export;
-    const key = `${source?.hash} ${parts.weights}`;
+    const key = `${source?.hash} ${parts.weights} ${rigid}`;
     if (key === this.key) return;
     this.key = key;
     if (this.isOn && this.pointer === null) this.fetch();
@@ -39,8 +51,10 @@ export class Brush {
   async fetch() {
     const { source } = this.app.views;
     if (!source.shape) return;
-    const weights = await this.app.query("weights");
-    this.weights = Float32Array.from(weights ?? new Array(source.shape.positions.length / 3).fill(1));
+    const { layer } = this.paint;
+    const weights = await this.app.query(layer);
+    if (!source.shape || layer !== this.paint.layer) return;
+    this.weights = Float32Array.from(weights ?? new Array(source.shape.positions.length / 3).fill(layer === "rigid" ? 0 : 1));
     this.colour();
   }
 
@@ -79,7 +93,7 @@ export class Brush {
 
   dab(view, ray, done) {
     this.isAsking = true;
-    const more = { weight: Number($("brush-weight").value), strength: Number($("brush-strength").value), radius: Number($("brush-size").value), done };
+    const more = { ...this.paint, strength: Number($("brush-strength").value), radius: Number($("brush-size").value), done };
     this.asked = this.app.edit("paint", { shape: view.name, ray, ...more }).then((changed) => {
       this.isAsking = false;
       if (!changed) return this.fetch();
@@ -90,14 +104,8 @@ export class Brush {
     return this.asked;
   }
 
-  // A ring as large as the brush, around the pointer.
-  follow(element, event) {
-    const view = this.app.views.list.find((other) => other.element === element);
-    this.ring.hidden = !this.isOn || view.name === "target" || !view.shape;
-    if (this.ring.hidden) return;
-    const { left, top } = element.getBoundingClientRect();
-    const size = 2 * view.camera.pixels(Number($("brush-size").value), view.box.width, view.box.height);
-    element.append(this.ring);
-    Object.assign(this.ring.style, { left: `${event.clientX - left}px`, top: `${event.clientY - top}px`, width: `${size}px`, height: `${size}px` });
+  follow(view, event) {
+    if (this.isOn && view.name !== "target" && view.shape) this.ring.follow(view, event, Number($("brush-size").value));
+    else this.ring.hide();
   }
 }

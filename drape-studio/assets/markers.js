@@ -1,4 +1,4 @@
-// The markers of one view: a button per landmark, over the picture.
+// The markers of one view: a button per landmark, over the picture. It is a small dot; its number shows under the pointer.
 
 import { markColour } from "./colours.js";
 
@@ -59,7 +59,7 @@ export class Markers {
   add(id) {
     const marker = document.createElement("button");
     marker.dataset.id = id;
-    marker.style.background = markColour(id);
+    marker.style.setProperty("--mark", markColour(id));
     marker.addEventListener("focus", () => this.view.app.choose(id));
     this.layer.append(marker);
     this.entries.set(id, { marker });

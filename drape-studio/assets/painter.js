@@ -74,6 +74,7 @@ export class Painter {
     if (!app.views || renderer.gl.isContextLost()) return;
     const isResized = renderer.begin(app.views.size);
     const { landmarks } = app;
+    app.loupe?.draw(this);
     for (const view of app.views.list) {
       if (view.box.width <= 1) continue;
       if (view.isStale || isResized) this.drawView(view, landmarks);
@@ -91,17 +92,26 @@ export class Painter {
     this.renderer.aim(box, view.camera.matrices(box.width / box.height));
   }
 
-  drawView(view, landmarks) {
+  // The shape of a view as it is shown alone, where the renderer is aimed; how that was done.
+  drawShape(view) {
     const { app, renderer } = this;
     const { style, look } = app.preferences;
     const colours = COLOURS[app.theme];
-    this.aim(view);
     renderer.clear(colours.back);
-    if (!view.shape) return;
+    if (!view.shape) return null;
     const isResult = view.name === "result";
     const range = isResult ? app.legend.range : [0, 1];
     const how = { style, look, colour: colours[view.name], line: colours.line, ink: ink(view) };
     renderer.draw(view.shape, { ...how, range, isGrey: isResult });
+    return { colours, isResult, range, how };
+  }
+
+  drawView(view, landmarks) {
+    const { app, renderer } = this;
+    this.aim(view);
+    const drawn = this.drawShape(view);
+    if (!drawn) return;
+    const { colours, isResult, range, how } = drawn;
     this.probe(view, landmarks);
     const ranges = view.name === "source" ? app.parts.pointedRanges : [];
     if (ranges.length > 0 && view.shape.values) renderer.through(view.shape, ranges, range);

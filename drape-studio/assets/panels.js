@@ -102,6 +102,7 @@ export class Panels {
     this.showPresets(state);
     const isPainted = Boolean(state.parts.weights) && !state.parts.weights.startsWith("property:");
     $("export-weights").parentElement.hidden = !isPainted;
+    $("export-rigid").parentElement.hidden = !state.painted_rigid;
     if (document.activeElement !== $("seed")) $("seed").value = settings.seed;
     $("mirror").checked = Boolean(state.mirror);
     const axes = state.mirror ?? [state.source?.symmetry ?? 0, state.target?.symmetry ?? 0];

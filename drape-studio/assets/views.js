@@ -73,13 +73,15 @@ class View {
     const { clientX: x, clientY: y, button } = event;
     const landmark = marker && button === 0 ? Number(marker.dataset.id) : null;
     if (landmark !== null) this.app.choose(landmark);
-    if (landmark === null && this.app.brush.takes(this, event)) return void this.app.brush.begin(this, event);
+    const tool = this.app.tools.find((tool) => landmark === null && tool.takes(this, event));
+    if (tool) return void tool.begin(this, event);
     this.pointers.set(event.pointerId, { x, y, startX: x, startY: y, button, landmark, isClick: true });
     if (this.pointers.size > 1) this.pointers.forEach((p) => (p.isClick = false));
   }
 
   move(event) {
-    if (this.app.brush.isAt(event)) return void this.app.brush.go(this, event);
+    const tool = this.toolAt(event);
+    if (tool) return void tool.go(this, event);
     const pointer = this.pointers.get(event.pointerId);
     if (!pointer) return;
     const [dx, dy] = [event.clientX - pointer.x, event.clientY - pointer.y];
@@ -87,7 +89,10 @@ class View {
     if (pointer.isClick) return;
     const before = this.pinch();
     [pointer.x, pointer.y] = [event.clientX, event.clientY];
-    if (pointer.landmark !== null) return void this.app.drag(this, pointer.landmark, this.ray(event), false);
+    if (pointer.landmark !== null) {
+      this.app.loupe.show(this, pointer.landmark, event);
+      return void this.app.drag(this, pointer.landmark, this.ray(event), false);
+    }
     this.element.classList.add("is-turning");
     const after = this.pinch();
     if (before && after) {
@@ -104,6 +109,11 @@ class View {
     }
   }
 
+  // The brush that a pointer leads.
+  toolAt(event) {
+    return this.app.tools.find((tool) => tool.isAt(event));
+  }
+
   // The middle and the distance of two fingers.
   pinch() {
     const [a, b] = [...this.pointers.values()];
@@ -111,12 +121,14 @@ class View {
   }
 
   release(event, isMeant) {
-    if (this.app.brush.isAt(event)) return void this.app.brush.end(this, isMeant ? event : null);
+    const tool = this.toolAt(event);
+    if (tool) return void tool.end(this, isMeant ? event : null);
     const pointer = this.pointers.get(event.pointerId);
     this.pointers.delete(event.pointerId);
     this.element.classList.remove("is-turning");
     if (!pointer) return;
     if (pointer.landmark !== null && !pointer.isClick) {
+      this.app.loupe.hide();
       this.app.drag(this, pointer.landmark, isMeant ? this.ray(event) : null, true);
     } else if (pointer.isClick && isMeant && pointer.button === 0 && pointer.landmark === null) {
       this.app.place(this, this.ray(event));

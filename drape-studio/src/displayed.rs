@@ -10,7 +10,7 @@ use mesh_core::{
     UnitFrame, Vector3, VertexData, VertexId,
 };
 use mesh_draping::landmarks::{source_symmetry, target_symmetry};
-use mesh_draping::{Source, Target};
+use mesh_draping::{SnapPoints, Source, Target};
 use mesh_metrics::self_intersections;
 
 use crate::buffers::DisplayBuffers;
@@ -41,6 +41,7 @@ pub(crate) struct DisplayedSource {
     pub(crate) looks: DisplayedLooks,
     /// The axis across which it is most nearly symmetric.
     pub(crate) symmetry: usize,
+    snap_points: OnceLock<SnapPoints>,
 }
 
 /// A shape to drape over.
@@ -53,6 +54,7 @@ pub(crate) struct DisplayedTarget {
     /// The axis across which it is most nearly symmetric.
     pub(crate) symmetry: usize,
     picked: PickSurface,
+    snap_points: OnceLock<SnapPoints>,
 }
 
 /// What is seen and picked: all that is in the file.
@@ -106,6 +108,7 @@ impl DisplayedSource {
             buffers: DisplayBuffers::of_mesh(&frame, &soup, triangles.collect()),
             looks: source_looks(&source),
             symmetry: source_symmetry(&source).axis,
+            snap_points: OnceLock::new(),
             frame,
             source,
         }
@@ -168,6 +171,15 @@ impl DisplayedSource {
         self.source.place(location)
     }
 
+    /// What marks snap to, in the rows of the vertices.
+    pub(crate) fn snap_points(&self) -> &SnapPoints {
+        self.snap_points.get_or_init(|| {
+            let triangles = self.source.triangulation().triangles().iter();
+            let rows = triangles.map(|t| t.map(|v| v.index() as u32));
+            SnapPoints::of_faces(self.source.rest().as_slice().to_vec(), rows)
+        })
+    }
+
     /// The hierarchy of the triangles with the vertices at `x`.
     pub(crate) fn moved_bvh(&self, x: &Positions) -> TriangleBvh {
         let mut bvh = self.source.bvh().clone();
@@ -195,10 +207,24 @@ impl DisplayedTarget {
         Ok(Self {
             looks: DisplayedLooks::new(looks, &target.soup().faces, rows, &shown),
             symmetry: target_symmetry(&target).axis,
+            snap_points: OnceLock::new(),
             picked,
             frame,
             buffers,
             target,
+        })
+    }
+
+    /// What marks snap to.
+    pub(crate) fn snap_points(&self) -> &SnapPoints {
+        self.snap_points.get_or_init(|| match &self.picked {
+            PickSurface::Triangles(_) => {
+                let soup = self.target.soup();
+                SnapPoints::of_faces(soup.positions.clone(), &soup.faces)
+            }
+            PickSurface::Points(points) => {
+                SnapPoints::of_cloud(points.clone(), normals(points, self.judged()))
+            }
         })
     }
 
@@ -229,13 +255,15 @@ fn cloud(
     judged: &dyn TargetSurface,
     frame: &UnitFrame,
 ) -> (PickSurface, DisplayBuffers, Vec<ShownTriangle>) {
-    let closest = judged.closest_points(points);
-    let normals: Vec<Vector3> = closest
-        .iter()
-        .map(|c| judged.normal(&c.location).unwrap_or_default())
-        .collect();
-    let buffers = DisplayBuffers::of_cloud(frame, points, &normals);
+    let buffers = DisplayBuffers::of_cloud(frame, points, &normals(points, judged));
     (PickSurface::Points(points.to_vec()), buffers, Vec::new())
+}
+
+/// The normals of a cloud at its points.
+fn normals(points: &[Point3], judged: &dyn TargetSurface) -> Vec<Vector3> {
+    let closest = judged.closest_points(points);
+    let normals = closest.iter().map(|c| judged.normal(&c.location));
+    normals.map(Option::unwrap_or_default).collect()
 }
 
 /// What is shown of the source as its file has it.

@@ -1,8 +1,8 @@
 //! A drape that keeps a log of what was done to it, so that it can be done again to the bit.
 
-use anyhow::{Context as _, Result};
+use anyhow::{ensure, Context as _, Result};
 use mesh_core::Positions;
-use mesh_draping::{Draping, Parts, Preset, Transfer};
+use mesh_draping::{Draping, Moves, Parts, Preset, Stroke, Transfer};
 use mesh_metrics::Counterparts;
 use neural_drape::network::NetworkMap;
 use neural_drape::{DrapeState, StepReport};
@@ -15,6 +15,16 @@ pub(crate) struct LoggedRun {
     shapes: Shapes,
     draping: Draping,
     log: RunLog,
+    /// What each stroke that holds moved, to take it back.
+    moves: Vec<Moves>,
+}
+
+/// What a drape has come to, to go on from later.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct SavedRun {
+    pub(crate) state: DrapeState,
+    /// What each stroke that holds moved.
+    pub(crate) moves: Vec<Moves>,
 }
 
 impl LoggedRun {
@@ -23,6 +33,7 @@ impl LoggedRun {
         Ok(Self {
             draping: begin(shapes, &log)?,
             shapes: shapes.clone(),
+            moves: Vec::new(),
             log: RunLog {
                 events: Vec::new(),
                 iteration: 0,
@@ -31,11 +42,16 @@ impl LoggedRun {
         })
     }
 
-    /// The drape of `log` as it was when `state` was saved, at the end of the log.
-    pub(crate) fn restored(shapes: &Shapes, log: RunLog, state: &DrapeState) -> Result<Self> {
+    /// The drape of `log` as it was when it was saved, at the end of the log.
+    pub(crate) fn restored(shapes: &Shapes, log: RunLog, saved: &SavedRun) -> Result<Self> {
+        ensure!(
+            log.strokes().len() == saved.moves.len(),
+            "the drape is saved with strokes that it does not have"
+        );
         let mut run = Self {
-            draping: restore(shapes, &log, state)?,
+            draping: restore(shapes, &log, &saved.state)?,
             shapes: shapes.clone(),
+            moves: saved.moves.clone(),
             log,
         };
         run.note(Change::Rebuilt);
@@ -54,6 +70,8 @@ impl LoggedRun {
             match &event.change {
                 Change::Landmarks(marks) => run.set_marks(marks.clone())?,
                 Change::Parts(parts) => run.set_parts(parts.clone())?,
+                Change::Brushed(stroke) => run.brush(stroke.clone())?,
+                Change::Unbrushed => run.unbrush()?,
                 Change::Extended(n) => run.extend(*n),
                 Change::Rebuilt => run.rebuild()?,
             }
@@ -96,6 +114,33 @@ impl LoggedRun {
         Ok(())
     }
 
+    /// Goes on with other strokes: those that hold no longer are taken back, the newest first, and new ones are done.
+    pub(crate) fn set_strokes(&mut self, strokes: &[Stroke]) -> Result<()> {
+        let known = self.log.strokes().into_iter();
+        let n_kept = known.zip(strokes).take_while(|(a, b)| *a == *b).count();
+        while self.moves.len() > n_kept {
+            self.unbrush()?;
+        }
+        for stroke in &strokes[n_kept..] {
+            self.brush(stroke.clone())?;
+        }
+        Ok(())
+    }
+
+    fn brush(&mut self, stroke: Stroke) -> Result<()> {
+        self.moves.push(self.draping.brush(&stroke)?);
+        self.note(Change::Brushed(stroke));
+        Ok(())
+    }
+
+    fn unbrush(&mut self) -> Result<()> {
+        let moves = self.moves.pop();
+        let moves = moves.context("the session takes back a stroke that was never done")?;
+        self.draping.displace(&moves.reversed())?;
+        self.note(Change::Unbrushed);
+        Ok(())
+    }
+
     /// Gives the run more iterations.
     pub(crate) fn extend(&mut self, n_iterations: usize) {
         self.draping.extend(n_iterations);
@@ -135,8 +180,12 @@ impl LoggedRun {
         self.draping.counterparts()
     }
 
-    pub(crate) fn state(&mut self) -> DrapeState {
-        self.draping.state()
+    /// What it has come to.
+    pub(crate) fn saved(&mut self) -> SavedRun {
+        SavedRun {
+            state: self.draping.state(),
+            moves: self.moves.clone(),
+        }
     }
 
     pub(crate) fn log(&self) -> &RunLog {

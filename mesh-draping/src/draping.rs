@@ -13,7 +13,7 @@ use crate::stages::{DRAPING, REFINING};
 use crate::stand_in::StandIn;
 use crate::start::Start;
 use crate::symmetric::Opposites;
-use crate::{Error, History, Note, Outcome, Pair, Preset, Stages};
+use crate::{BrushInput, Error, History, Moves, Note, Outcome, Pair, Preset, Stages, Stroke};
 
 /// Iterations on a dense source itself, after its stand-in was draped.
 const N_REFINING: usize = 60;
@@ -324,6 +324,41 @@ impl Draping {
             Some(stand_in) => self.drape.set_regions(&stand_in.regions(regions)),
             None => self.drape.set_regions(regions),
         }
+    }
+
+    /// Brushes the present shape, as [`Self::positions`] tells it; the drape goes on from there. Rigid regions stay as they
+    /// are. What moved comes back, for [`Self::displace`] to take it back. The run gets no more iterations by this.
+    ///
+    /// # Errors
+    /// A stroke whose numbers no brush has; nothing moved.
+    pub fn brush(&mut self, stroke: &Stroke) -> Result<Moves, Error> {
+        stroke.check()?;
+        let mut brushed = self.positions();
+        let input = BrushInput {
+            pair: &self.pair,
+            held: &self.regions.rigid,
+        };
+        stroke.apply(input, &mut brushed);
+        let present = match &self.stand_in {
+            Some(stand_in) => stand_in.carry(&self.drape.positions()),
+            None => self.drape.positions(),
+        };
+        let moves = Moves::between(&present, &brushed);
+        self.displace(&moves)?;
+        Ok(moves)
+    }
+
+    /// Moves vertices, in the target's coordinates; the drape goes on from there.
+    ///
+    /// # Errors
+    /// A move that is not finite; nothing moved.
+    pub fn displace(&mut self, moves: &Moves) -> Result<(), Error> {
+        let moves = moves.spread(self.pair.source.rest().len());
+        match &self.stand_in {
+            Some(stand_in) => self.drape.displace(&stand_in.moves(&moves))?,
+            None => self.drape.displace(&moves)?,
+        }
+        Ok(())
     }
 
     /// Gives the run more iterations.

@@ -21,6 +21,8 @@
 //! | treat parts in their own way | [`Parts`], [`parts`] |
 //! | drape | [`Transfer::run`] |
 //! | drape step by step, pause, change landmarks, resume | [`Transfer::start`], [`Draping`] |
+//! | relax, pull or slide a place of the result by hand | [`Stroke`], [`Draping::brush`] |
+//! | snap a place to a vertex, or to the most curved one | [`SnapPoints`] |
 //! | start from a shape that nearly fits | [`Transfer::with_start`] |
 //! | start from what shapes of a population have in common | [`Population`] |
 //! | get a result as symmetric as the source | [`Transfer::symmetric`] |
@@ -33,6 +35,7 @@
 //! left out or repaired comes back as values: [`Note`], [`landmarks::Finding`], [`Explanation`].
 
 mod background;
+mod brush;
 mod draping;
 mod ending;
 mod error;
@@ -49,6 +52,7 @@ mod population;
 pub mod preset;
 mod seams;
 mod similarity;
+mod snap;
 mod source;
 mod stages;
 mod stand_in;
@@ -58,6 +62,7 @@ mod target;
 mod transfer;
 
 pub use background::{Background, BackgroundStatus};
+pub use brush::{Brush, BrushInput, Moves, Stroke};
 pub use draping::{adjusted, Draping};
 pub use error::{Error, MeshProblem};
 pub use explain::{Advice, Explanation, PlaceKind, RegionDistances, WorstPlace};
@@ -72,6 +77,7 @@ pub use population::Population;
 pub use preset::Preset;
 pub use seams::{Seams, SeamsError};
 pub use similarity::Similarity;
+pub use snap::{SnapPoints, SNAP_REACH};
 pub use source::{GatheredPositions, Source};
 pub use stages::{Stages, DRAPING, REFINING};
 pub use target::Target;

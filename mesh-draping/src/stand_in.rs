@@ -1,6 +1,6 @@
 //! Dense sources: a coarse stand-in is deformed and draped first, and carries the source.
 
-use mesh_core::{Landmark, MeshPoint, Positions, Proxy, VertexData, VertexId, Weld};
+use mesh_core::{Landmark, MeshPoint, Positions, Proxy, Vector3, VertexData, VertexId, Weld};
 use neural_drape::{ParametrizationConfig, Regions};
 
 use crate::{Error, InitialMethod, Pair, Preset, Source};
@@ -109,6 +109,11 @@ impl StandIn {
     /// Where the vertices of the stand-in are in a shape of the source.
     pub(crate) fn pick(&self, x: &Positions) -> Positions {
         self.proxy.vertices().iter().map(|&v| x[v]).collect()
+    }
+
+    /// The moves of the vertices of the stand-in among those of the source.
+    pub(crate) fn moves(&self, moves: &VertexData<Vector3>) -> VertexData<Vector3> {
+        self.proxy.vertices().iter().map(|&v| moves[v]).collect()
     }
 
     /// The source as the stand-in at `x` carries it.

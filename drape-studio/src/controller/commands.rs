@@ -8,6 +8,7 @@ use mesh_draping::{Draping, Preset};
 use super::can::{Action, Status, OPEN_FIRST};
 use super::{ActiveRun, Command, Controller, Inbox};
 use crate::checkpoint::{self, Checkpoint};
+use crate::logged_run::SavedRun;
 use crate::runner::{Order, Runner, RunnerParts, Update};
 use crate::session::{Mark, RunLog};
 
@@ -60,15 +61,12 @@ impl Controller {
             iteration: 0,
         };
         self.leave_run();
+        self.session.begin_strokes(Vec::new());
         self.broadcast.forget_drape();
         self.start_runner(log, None)
     }
 
-    pub(super) fn start_runner(
-        &mut self,
-        log: RunLog,
-        state: Option<neural_drape::DrapeState>,
-    ) -> Result<()> {
+    pub(super) fn start_runner(&mut self, log: RunLog, saved: Option<SavedRun>) -> Result<()> {
         let displayed = self.displayed.clone().context(OPEN_FIRST)?;
         let n_more = Draping::n_more(&Preset::from_toml(&log.settings)?);
         self.n_runs += 1;
@@ -79,7 +77,7 @@ impl Controller {
             figures: Arc::clone(&self.figures),
             checkpoint: self.checkpoint_path(),
             log: log.clone(),
-            state,
+            saved,
         };
         self.session.run = Some(log.clone());
         self.run = Some(ActiveRun {
@@ -140,6 +138,7 @@ impl Controller {
     pub(super) fn leave_run(&mut self) {
         if self.run.take().is_some() {
             self.session.run = None;
+            self.session.begin_strokes(Vec::new());
             // Where it cannot be removed, the session says that there is no drape.
             drop(std::fs::remove_file(self.checkpoint_path()));
         }
@@ -152,16 +151,16 @@ impl Controller {
             return;
         }
         let path = self.checkpoint_path();
-        let (log, state) = match checkpoint::read(&path) {
-            Ok(Checkpoint { history, state }) => {
+        let (log, saved) = match checkpoint::read(&path) {
+            Ok(Checkpoint { history, saved }) => {
                 self.broadcast.set_curves(history.curves);
-                (Some(history.log), Some(state))
+                (Some(history.log), Some(saved))
             }
             // A session that came without its drape: it is done again.
             Err(_) => (self.session.run.clone(), None),
         };
         if let Some(log) = log {
-            if let Err(error) = self.start_runner(log, state) {
+            if let Err(error) = self.start_runner(log, saved) {
                 self.session.run = None;
                 self.notice = Some(format!("the drape in progress is lost: {error:#}"));
             }
@@ -188,7 +187,11 @@ impl Controller {
             Update::Changed(log) => run.log = log,
             Update::Failed(error) => (run.status, run.error) = (Status::Failed, Some(error)),
         }
+        let is_alive = run.status != Status::Failed;
         self.session.run = Some(run.log.clone());
+        if is_alive {
+            self.order_strokes();
+        }
         self.changed();
     }
 

@@ -7,6 +7,7 @@ use mesh_draping::Preset;
 use serde_json::Value;
 
 use super::can::Action;
+use super::paint::forget_rigid;
 use super::{Controller, Edit};
 use crate::session::{Mark, NamedSettings, MAX_MARKS};
 
@@ -16,20 +17,24 @@ const MAX_NAME: usize = 80;
 impl Controller {
     /// Makes an edit; the number of the landmark where a place is marked.
     pub(super) fn make(&mut self, edit: Edit) -> Result<Value> {
-        if !matches!(edit, Edit::Drag { .. } | Edit::Paint(_)) {
+        if !matches!(edit, Edit::Drag { .. } | Edit::Paint(_) | Edit::Brush(_)) {
             self.finish_drag();
         }
         match edit {
-            Edit::Place { shape, ray } => return self.place(shape, &ray),
             Edit::Draw { shape, ray } => return self.draw(shape, &ray),
             Edit::EndCurve => return self.end_curve(),
             Edit::CancelCurve => return Ok(self.cancel_curve()),
+            Edit::Place { shape, ray, snap } => return self.place(shape, &ray, snap),
             Edit::Drag {
                 landmark,
                 shape,
                 ray,
                 done,
-            } => self.drag(landmark, shape, ray.as_ref(), done)?,
+                snap,
+            } => {
+                let to = ray.and_then(|ray| self.pick_snapped(shape, &ray, snap));
+                self.drag(landmark, to, done)?;
+            }
             Edit::Delete { landmark } => {
                 self.find(landmark)?;
                 self.session.edit(|d| d.marks.retain(|m| m.id != landmark));
@@ -41,6 +46,8 @@ impl Controller {
             Edit::Weight { landmark, weight } => self.weigh(landmark, weight)?,
             Edit::Kind { landmark, kind } => self.change_mark(landmark, |m| m.kind = kind)?,
             Edit::Paint(dab) => return self.paint(&dab),
+            Edit::Brush(dab) => return self.brush(&dab),
+            Edit::ClearRigid => self.session.edit(|d| forget_rigid(&mut d.parts)),
             Edit::ClearWeights => self.session.edit(|d| d.parts.weights = None),
             Edit::Clear => {
                 self.situation().check(Action::Clear)?;
@@ -110,6 +117,7 @@ impl Controller {
         if self.dragged_from.is_none() {
             self.pass_on();
         }
+        self.order_strokes();
         self.ask_preview();
         self.changed();
     }

@@ -47,7 +47,11 @@ impl Controller {
         match status {
             None | Some(Status::Starting | Status::Failed) => return Ok(false),
             Some(Status::Running) => self.bring_to_rest()?,
-            Some(Status::Paused | Status::Stopped | Status::Finished) => {}
+            Some(Status::Paused | Status::Stopped | Status::Finished) => {
+                if self.are_strokes_pending() {
+                    self.bring_to_rest()?;
+                }
+            }
         }
         let inputs = (self.session.source.clone(), self.session.target.clone());
         let (Some(shown), (Some(source), Some(target))) = (self.broadcast.draped(), inputs) else {
@@ -107,7 +111,7 @@ impl Controller {
     }
 
     /// Lets a running drape come to rest, shown and saved.
-    fn bring_to_rest(&mut self) -> Result<()> {
+    pub(super) fn bring_to_rest(&mut self) -> Result<()> {
         let (sender, rested) = channel();
         self.order(Order::Rest(sender))?;
         rested
@@ -125,7 +129,7 @@ impl Controller {
             self.is_of_present(kept),
             "it is of another source or target: go back to that one first"
         );
-        let Checkpoint { history, state } = checkpoint::read(&self.files.run(id))?;
+        let Checkpoint { history, saved } = checkpoint::read(&self.files.run(id))?;
         self.keep_result()?;
         self.leave_run();
         self.broadcast.forget_drape();
@@ -137,7 +141,9 @@ impl Controller {
             d.marks = marks.into_iter().chain(half.collect::<Vec<_>>()).collect();
             (d.parts, d.settings) = (parts, log.settings.clone());
         });
-        self.start_runner(log, Some(state))?;
+        let strokes = log.strokes().into_iter().cloned().collect();
+        self.session.begin_strokes(strokes);
+        self.start_runner(log, Some(saved))?;
         self.edited();
         Ok(())
     }

@@ -1,5 +1,6 @@
 //! The one place that changes the session: requests and news come in, the newest state goes out.
 
+mod brush;
 mod can;
 mod commands;
 mod drawing;
@@ -146,6 +147,8 @@ pub(crate) struct Controller {
     drawing: Option<Lines>,
     /// The stroke of the brush that goes on.
     stroke: Option<paint::Stroke>,
+    /// The stroke on the result that goes on.
+    brushing: Option<brush::Brushing>,
     /// The shape shown under this number, to pick on.
     shown_bvh: Option<(u32, TriangleBvh)>,
     revision: u64,
@@ -184,6 +187,7 @@ impl Controller {
             dragged_from: None,
             drawing: None,
             stroke: None,
+            brushing: None,
             shown_bvh: None,
             revision: 0,
             unsaved_since: Some(Instant::now()),
@@ -228,7 +232,13 @@ impl Controller {
                 let answer = self.open(opened).map_err(|e| format!("{e:#}"));
                 drop(reply.send(answer));
             }
-            Inbox::Snapshot(reply) => drop(reply.send(self.snapshot())),
+            Inbox::Snapshot(reply) => {
+                if self.are_strokes_pending() {
+                    // Where it does not come to rest, what is shown is taken.
+                    drop(self.bring_to_rest());
+                }
+                drop(reply.send(self.snapshot()));
+            }
             Inbox::Update(number, news) => self.hear(number, news),
             Inbox::Previewed(number, outcome) if number == self.n_previews => {
                 match outcome {
@@ -299,7 +309,7 @@ impl Controller {
                 PreviewOf::Adjusted(Arc::clone(&f.positions))
             }),
         };
-        if !is_pending {
+        if !is_pending && !self.are_strokes_pending() {
             self.show_drape_again();
         }
         self.newest_preview.store(self.n_previews, Ordering::SeqCst);

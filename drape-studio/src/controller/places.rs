@@ -1,10 +1,12 @@
 //! Places on the shapes: marked, mirrored, dragged.
 
 use anyhow::{bail, ensure, Result};
-use mesh_core::Point3;
+use mesh_core::{MeshPoint, Point3, VertexId};
 use mesh_draping::landmarks::{counterpart, MirrorPlanes, Plane};
+use mesh_draping::{SnapPoints, SNAP_REACH};
 use serde_json::{json, Value};
 
+use super::request::Snap;
 use super::{Controller, Shape};
 use crate::pick::{first_hit, Ray};
 use crate::session::{numbers, Mark, SourcePlace, MAX_MARKS};
@@ -44,9 +46,37 @@ impl Controller {
         }
     }
 
+    /// The place that a ray meets first, or that it snaps to.
+    pub(super) fn pick_snapped(
+        &mut self,
+        shape: Shape,
+        ray: &Ray,
+        snap: Option<Snap>,
+    ) -> Option<Place> {
+        let place = self.pick(shape, ray)?;
+        let Some(snap) = snap else {
+            return Some(place);
+        };
+        match place {
+            Place::Source(place) => {
+                let source = self.source.as_ref()?;
+                let at = place.mesh_point().position(source.source.rest());
+                let row = snap.vertex(source.snap_points(), &at, source.frame.scale)?;
+                let vertex = MeshPoint::vertex(VertexId::new(row));
+                Some(Place::Source(SourcePlace::of(&vertex)))
+            }
+            Place::Target(at) => {
+                let target = self.target.as_ref()?;
+                let points = target.snap_points();
+                let row = snap.vertex(points, &at, target.frame.scale)?;
+                points.point(row).map(Place::Target)
+            }
+        }
+    }
+
     /// Completes the newest landmark, moves its only side, or begins another one.
-    pub(super) fn place(&mut self, shape: Shape, ray: &Ray) -> Result<Value> {
-        let Some(place) = self.pick(shape, ray) else {
+    pub(super) fn place(&mut self, shape: Shape, ray: &Ray, snap: Option<Snap>) -> Result<Value> {
+        let Some(place) = self.pick_snapped(shape, ray, snap) else {
             return Ok(Value::Null);
         };
         let half = self.half_made(&place);
@@ -149,15 +179,10 @@ impl Controller {
         Some(Mark::of(id, &twin))
     }
 
-    pub(super) fn drag(
-        &mut self,
-        id: u32,
-        shape: Shape,
-        ray: Option<&Ray>,
-        done: bool,
-    ) -> Result<()> {
+    /// Moves a landmark to a place, if there is one.
+    pub(super) fn drag(&mut self, id: u32, to: Option<Place>, done: bool) -> Result<()> {
         self.find(id)?;
-        if let Some(place) = ray.and_then(|ray| self.pick(shape, ray)) {
+        if let Some(place) = to {
             if self.dragged_from.is_none() {
                 self.dragged_from = Some(self.session.document.clone());
             }
@@ -176,10 +201,21 @@ impl Controller {
     pub(super) fn finish_drag(&mut self) {
         // Whoever painted has been told by then why a stroke cannot be; it is forgotten.
         drop(self.finish_stroke());
+        self.finish_brushing();
         if let Some(before) = self.dragged_from.take() {
             if before != self.session.document {
                 self.session.remember(before);
             }
+        }
+    }
+}
+
+impl Snap {
+    /// The vertex that a place of a shape snaps to; `side` is the longest side of its box.
+    fn vertex(self, points: &SnapPoints, at: &Point3, side: f64) -> Option<usize> {
+        match self {
+            Self::Vertex => points.nearest(at),
+            Self::Curvature => points.most_curved(at, SNAP_REACH * side),
         }
     }
 }

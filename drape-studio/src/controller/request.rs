@@ -1,7 +1,7 @@
 //! What a page may ask for: a query changes nothing, an edit changes the document and can be undone, a command drives
 //! the drape.
 
-use mesh_draping::Treatment;
+use mesh_draping::{Brush, Treatment};
 use serde::{Deserialize, Serialize};
 
 use crate::pick::Ray;
@@ -15,6 +15,16 @@ pub(crate) enum Shape {
     Target,
     /// The source where it is shown now: a place on it is a place of the source.
     Result,
+}
+
+/// What a place that is marked goes to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub(crate) enum Snap {
+    /// The nearest vertex.
+    Vertex,
+    /// The most curved vertex of its surroundings.
+    Curvature,
 }
 
 /// One request, by its kind: `{"edit": {"do": "delete", "landmark": 3}}`, `{"command": "pause"}`.
@@ -49,6 +59,19 @@ pub(crate) enum Query {
     Curves,
     /// The weights of attraction, one per vertex.
     Weights,
+    /// What is painted rigid, one number per vertex: 1 where it is.
+    Rigid,
+}
+
+/// What is painted on the source.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub(crate) enum Layer {
+    /// How strongly it is attracted.
+    #[default]
+    Weights,
+    /// What moves as one body: where the weight is 1.
+    Rigid,
 }
 
 /// One touch of the brush.
@@ -60,6 +83,8 @@ pub(crate) struct Dab {
     pub(crate) ray: Option<Ray>,
     /// In longest sides of the source's box.
     pub(crate) radius: f64,
+    #[serde(default)]
+    pub(crate) layer: Layer,
     /// What the weights go to, and how far with this dab; 0..=1.
     pub(crate) weight: f64,
     pub(crate) strength: f64,
@@ -74,6 +99,18 @@ impl Dab {
     }
 }
 
+/// One touch of a brush on the result.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct BrushDab {
+    pub(crate) brush: Brush,
+    pub(crate) ray: Option<Ray>,
+    /// In longest sides of the target's box.
+    pub(crate) radius: f64,
+    pub(crate) strength: f64,
+    pub(crate) done: bool,
+}
+
 /// A change of landmarks, parts or settings.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(tag = "do", rename_all = "snake_case", deny_unknown_fields)]
@@ -82,6 +119,8 @@ pub(crate) enum Edit {
     Place {
         shape: Shape,
         ray: Ray,
+        #[serde(default)]
+        snap: Option<Snap>,
     },
     /// Moves a landmark on one shape; one edit from the first ray to the one that is `done`.
     Drag {
@@ -89,6 +128,8 @@ pub(crate) enum Edit {
         shape: Shape,
         ray: Option<Ray>,
         done: bool,
+        #[serde(default)]
+        snap: Option<Snap>,
     },
     Delete {
         landmark: u32,
@@ -115,10 +156,14 @@ pub(crate) enum Edit {
         landmark: u32,
         weight: f64,
     },
-    /// Paints weights of attraction on the source; one edit from the first dab to the one that is `done`.
+    /// Paints weights of attraction on the source, or what is rigid; one edit from the first dab to the one that is `done`.
     Paint(Dab),
+    /// Brushes the result; one edit from the first dab to the one that is `done`.
+    Brush(BrushDab),
     /// Forgets the weights.
     ClearWeights,
+    /// Forgets what is painted rigid.
+    ClearRigid,
     /// Deletes all landmarks.
     Clear,
     /// Axes of source and target across which landmarks are placed twice.

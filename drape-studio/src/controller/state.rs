@@ -4,7 +4,7 @@ use mesh_draping::Preset;
 use serde_json::{json, Value};
 
 use super::Controller;
-use crate::session::{fingerprint, numbers, Mark, MarkKind};
+use crate::session::{fingerprint, numbers, painted_rigid, Mark, MarkKind};
 
 impl Controller {
     /// Inputs, landmarks, settings, the drape: everything but shapes and figures.
@@ -29,6 +29,8 @@ impl Controller {
             "notice": self.notice,
             "mirror": document.mirror,
             "parts": document.parts,
+            "painted_rigid": painted_rigid(&document.parts),
+            "strokes": document.n_strokes,
             "inner": self.inner_state(),
             "settings": {
                 "preset": self.preset.name,

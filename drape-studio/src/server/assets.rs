@@ -10,7 +10,7 @@ const SCRIPT: &str = "text/javascript; charset=utf-8";
 const SVG: &str = "image/svg+xml";
 
 /// Name, type and text of every file.
-const FILES: [(&str, &str, &str); 32] = [
+const FILES: [(&str, &str, &str); 35] = [
     ("index.html", HTML, include_str!("../../assets/index.html")),
     ("style.css", CSS, include_str!("../../assets/style.css")),
     ("icon.svg", SVG, include_str!("../../assets/icon.svg")),
@@ -56,6 +56,9 @@ const FILES: [(&str, &str, &str); 32] = [
     ("cursor.js", SCRIPT, include_str!("../../assets/cursor.js")),
     ("files.js", SCRIPT, include_str!("../../assets/files.js")),
     ("paint.js", SCRIPT, include_str!("../../assets/paint.js")),
+    ("loupe.js", SCRIPT, include_str!("../../assets/loupe.js")),
+    ("ring.js", SCRIPT, include_str!("../../assets/ring.js")),
+    ("sculpt.js", SCRIPT, include_str!("../../assets/sculpt.js")),
     ("strip.js", SCRIPT, include_str!("../../assets/strip.js")),
     ("heats.js", SCRIPT, include_str!("../../assets/heats.js")),
     ("hover.js", SCRIPT, include_str!("../../assets/hover.js")),

@@ -15,7 +15,7 @@ use super::{snapshot, App};
 use crate::broadcast::ShownShape;
 use crate::controller::{Snapshot, OPEN_FIRST};
 use crate::replay::Replayed;
-use crate::session::{landmarks, RunLog, Session};
+use crate::session::{landmarks, painted_rigid, RunLog, Session};
 use crate::shapes::Shapes;
 
 /// Pixels along the side of a picture in the report.
@@ -28,7 +28,7 @@ struct Download {
     bytes: Vec<u8>,
 }
 
-/// The result, the warp, the landmarks, the weights, the report or the session.
+/// The result, the warp, the landmarks, what is painted, the report or the session.
 pub(super) async fn export(State(app): State<Arc<App>>, Path(what): Path<String>) -> Response {
     let Some(snapshot) = snapshot(&app).await else {
         return StatusCode::SERVICE_UNAVAILABLE.into_response();
@@ -87,6 +87,7 @@ fn make(what: &str, snapshot: Snapshot) -> Result<Download> {
             work.landmarks().into_bytes(),
         )),
         "weights" => work.weights(),
+        "rigid" => work.rigid(),
         "result" => work.result(),
         "warp" => Ok(download(
             "result.drape",
@@ -135,11 +136,13 @@ impl Work {
     fn weights(&self) -> Result<Download> {
         let path = self.session.document.parts.weights.as_ref();
         let path = path.filter(|path| !path.starts_with("property:"));
-        Ok(Download {
-            name: "weights.txt".to_owned(),
-            kind: "text/plain; charset=utf-8",
-            bytes: std::fs::read(path.context("no weights were painted")?)?,
-        })
+        painted("weights.txt", path.context("no weights were painted")?)
+    }
+
+    /// What is painted rigid, for `drape --rigid`.
+    fn rigid(&self) -> Result<Download> {
+        let path = painted_rigid(&self.session.document.parts);
+        painted("rigid.txt", path.context("nothing is painted rigid")?)
     }
 
     /// The shape that is shown and how it came about.
@@ -184,6 +187,15 @@ impl Work {
             iteration: 0,
         })
     }
+}
+
+/// A file that was painted.
+fn painted(name: &str, path: &str) -> Result<Download> {
+    Ok(Download {
+        name: name.to_owned(),
+        kind: "text/plain; charset=utf-8",
+        bytes: std::fs::read(path)?,
+    })
 }
 
 /// The report page of a result.

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{anyhow, ensure, Context as _};
 use mesh_core::io::write_atomic;
 use mesh_draping::landmarks::MAX_WEIGHT;
-use mesh_draping::plain_words;
+use mesh_draping::{plain_words, Stroke};
 use serde::{Deserialize, Serialize};
 
 use super::mark::Mark;
@@ -95,8 +95,18 @@ impl Session {
             mirrors.into_iter().all(|axis| axis < 3),
             "names an axis that is none"
         );
+        let mut held = documents.clone().map(|d| d.n_strokes);
+        ensure!(
+            held.all(|n| n <= self.strokes.len()),
+            "names strokes of a brush that are not there"
+        );
+        let mut strokes = self.strokes.iter();
+        strokes.try_for_each(Stroke::check)?;
         let events = self.run.iter().flat_map(|run| &run.events);
         for event in events {
+            if let Change::Brushed(stroke) = &event.change {
+                stroke.check()?;
+            }
             let is_long = matches!(event.change, Change::Extended(n) if n > MAX_MORE_ITERATIONS);
             ensure!(!is_long, "gives a drape more iterations than it can do");
         }

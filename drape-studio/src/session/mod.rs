@@ -4,15 +4,18 @@ mod file;
 mod kept;
 mod log;
 mod mark;
+mod painted;
+mod strokes;
 
 pub(crate) use file::{fnv1a, read, InputRecord};
 pub(crate) use kept::{Kept, NamedSettings};
 pub(crate) use log::{Change, Event, RunLog};
 pub(crate) use mark::{fingerprint, landmarks, numbers, Lines, Mark, MarkKind, SourcePlace};
+pub(crate) use painted::{painted_rigid, RIGID_FOLDER};
 
 use serde::{Deserialize, Serialize};
 
-use mesh_draping::Parts;
+use mesh_draping::{Parts, Stroke};
 
 /// How many edits can be undone.
 const MAX_UNDO: usize = 200;
@@ -36,6 +39,9 @@ pub(crate) struct Session {
     /// Targets that wait for their turn.
     #[serde(default)]
     pub(crate) queue: Vec<InputRecord>,
+    /// Every stroke of a brush on the drape in progress, those that were undone last.
+    #[serde(default)]
+    strokes: Vec<Stroke>,
     undo: Vec<Document>,
     redo: Vec<Document>,
 }
@@ -59,6 +65,9 @@ pub(crate) struct Document {
     /// Kept results that were taken out of the list.
     #[serde(default)]
     pub(crate) dismissed: Vec<u32>,
+    /// How many strokes hold.
+    #[serde(default)]
+    pub(crate) n_strokes: usize,
 }
 
 impl Session {
@@ -75,11 +84,13 @@ impl Session {
                 parts: Parts::default(),
                 saved: Vec::new(),
                 dismissed: Vec::new(),
+                n_strokes: 0,
             },
             next_id: 1,
             run: None,
             kept: Vec::new(),
             queue: Vec::new(),
+            strokes: Vec::new(),
             undo: Vec::new(),
             redo: Vec::new(),
         }
@@ -154,6 +165,7 @@ impl Session {
     fn forget_edits(&mut self) {
         self.undo.clear();
         self.redo.clear();
+        self.begin_strokes(Vec::new());
         self.run = None;
     }
 

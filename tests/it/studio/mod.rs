@@ -3,6 +3,7 @@
 mod access;
 mod big;
 mod browser;
+mod brushing;
 mod budget;
 mod curves;
 mod defects;
@@ -11,6 +12,7 @@ mod going_on;
 mod history;
 mod inputs;
 mod looks;
+mod marks;
 mod page;
 mod painting;
 mod pictures;

@@ -76,6 +76,61 @@ fn painted_weights_are_those_of_the_command_line() {
 }
 
 #[test]
+fn what_is_painted_rigid_moves_as_one_body_here_and_from_the_command_line() {
+    let place = Workplace::new();
+    let server = Server::start(&place.path(""), &SHORT);
+    let mut wire = Wire::own(&server);
+    let rigid = |wire: &mut Wire| wire.ask(json!({ "query": { "do": "rigid" } }))["value"].clone();
+    let paint = |x: f64, weight: f64| {
+        let mut dab = dab(x, true);
+        dab["edit"]["layer"] = json!("rigid");
+        dab["edit"]["weight"] = json!(weight);
+        dab
+    };
+    assert!(rigid(&mut wire).is_null());
+    wire.ask(json!({ "edit": { "do": "mirror", "axes": [0, 0] } }));
+    wire.ask(paint(0.25, 1.0));
+    wire.ask(json!({ "edit": { "do": "mirror", "axes": null } }));
+    let both = rigid(&mut wire);
+    // One side is not rigid any more; undo brings it back.
+    wire.ask(paint(-0.25, 0.0));
+    let one = rigid(&mut wire);
+    let n = |of: &Value| {
+        of.as_array()
+            .map(|all| all.iter().filter(|r| **r == json!(1.0)).count())
+    };
+    assert!(n(&one) > Some(3) && n(&both) > n(&one), "{both} {one}");
+    wire.ask(json!({ "edit": { "do": "undo" } }));
+    assert_eq!(rigid(&mut wire), both);
+    wire.ask(json!({ "edit": { "do": "redo" } }));
+    // Weights are another layer.
+    wire.ask(dab(0.0, true));
+    assert_eq!(rigid(&mut wire), one);
+
+    wire.ask(json!({ "command": "drape" }));
+    wire.state(|s| s["run"]["status"] == "finished");
+    let result = download(&server, "result");
+    for what in ["weights", "rigid"] {
+        fs::write(place.path(&format!("{what}.txt")), download(&server, what)).unwrap();
+    }
+    place
+        .transfer("--weights weights.txt --rigid rigid.txt")
+        .well();
+    assert!(
+        place.read("out.obj").as_bytes() == result,
+        "the command line came to another result"
+    );
+    fs::write(place.path("exported.json"), download(&server, "session")).unwrap();
+    place.drape("replay exported.json -o replayed.obj").well();
+    assert!(
+        place.read("replayed.obj").as_bytes() == result,
+        "the replay came to another result"
+    );
+    wire.ask(json!({ "edit": { "do": "clear_rigid" } }));
+    assert!(rigid(&mut wire).is_null());
+}
+
+#[test]
 fn weights_are_painted_with_the_pointer() {
     let Some(browser) = browser() else { return };
     let place = Workplace::new();
@@ -92,6 +147,12 @@ fn weights_are_painted_with_the_pointer() {
     assert_eq!(page.value("studio.state.landmarks.length"), json!(6));
     page.press("#undo");
     page.wait("!studio.state.parts.weights && Math.min(...studio.brush.weights) === 1");
+    page.value("(() => { const s = document.getElementById('brush-weight'); s.value = '1 rigid'; s.dispatchEvent(new Event('change')); })()");
+    page.wait("Math.max(...studio.brush.weights) === 0");
+    page.drag([x - 40.0, y + 20.0], [x + 40.0, y + 20.0]);
+    page.wait("studio.state.painted_rigid && Math.max(...studio.brush.weights) === 1");
+    page.press("#clear-rigid");
+    page.wait("!studio.state.painted_rigid && Math.max(...studio.brush.weights) === 0");
     page.key("b", 66, 0);
     page.wait("!studio.brush.isOn && studio.views.source.shape.values === null");
 }
