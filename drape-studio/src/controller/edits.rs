@@ -53,11 +53,7 @@ impl Controller {
                 self.situation().check(Action::Clear)?;
                 self.session.edit(|d| d.marks.clear());
             }
-            Edit::Mirror { axes } => {
-                let is_axis = axes.iter().flatten().all(|&axis| axis < 3);
-                ensure!(is_axis, "an axis is 0, 1 or 2");
-                self.session.edit(|d| d.mirror = axes);
-            }
+            Edit::Mirror { axes } => self.mirror(axes)?,
             Edit::Part { name, treatment } => self.treat(&name, treatment)?,
             Edit::Preset { .. }
             | Edit::Seed { .. }
@@ -80,6 +76,14 @@ impl Controller {
         }
         self.edited();
         Ok(Value::Null)
+    }
+
+    /// Places landmarks twice from now on, across these axes of source and target.
+    fn mirror(&mut self, axes: Option<[usize; 2]>) -> Result<()> {
+        let is_axis = axes.iter().flatten().all(|&axis| axis < 3);
+        ensure!(is_axis, "an axis is 0, 1 or 2");
+        self.session.edit(|d| d.mirror = axes);
+        Ok(())
     }
 
     fn weigh(&mut self, landmark: u32, weight: f64) -> Result<()> {

@@ -82,7 +82,7 @@ fn relaxing_leaves_a_turned_rest_shape_and_smooths_a_rough_one() {
 
 #[test]
 fn pulling_brings_the_surface_to_the_target_and_no_far_side_through_it() {
-    let pair = ball_and_ellipsoid(16);
+    let pair = ball_and_ellipsoid(32);
     let before = turned_ball(&pair).map(|p| p + Vector3::new(0.4, 0.0, 0.0));
     let at = [TIP[0] + 0.4, TIP[1], TIP[2]];
     let after = brushed(&pair, &stroke(Brush::Pull, &[at, at]), &before);
@@ -100,7 +100,7 @@ fn pulling_brings_the_surface_to_the_target_and_no_far_side_through_it() {
 
 #[test]
 fn sliding_follows_the_brush_and_stays_on_the_target() {
-    let pair = ball_and_ellipsoid(16);
+    let pair = ball_and_ellipsoid(32);
     let target = pair.target.judged();
     let onto = |p: &Point3| target.closest_point(p).point;
     let before = turned_ball(&pair).map(onto);

@@ -295,8 +295,9 @@ mod tests {
         let thrown = (x[v] - true_place[v]).norm();
         let after = (repair.positions[v] - true_place[v]).norm();
         assert!(after < 0.7 * thrown, "{after} of {thrown}");
-        let moved = (0..x.len()).filter(|&i| repair.positions.as_slice()[i] != x.as_slice()[i]);
-        let n_moved = moved.count();
+        // All else is back to within a part of what was thrown.
+        let way = |i: &usize| (repair.positions.as_slice()[*i] - x.as_slice()[*i]).norm();
+        let n_moved = (0..x.len()).filter(|i| way(i) > 0.05 * thrown).count();
         assert!(n_moved <= 12, "{n_moved}");
     }
 

@@ -105,6 +105,13 @@ fn a_mirrored_landmark_has_a_twin() {
     };
     // What is said of the landmarks moves what is below.
     page.wait("studio.state.warnings.length > 0");
+    // Nothing lies over what is below the warnings.
+    let over = page.value(
+        "(() => { const r = document.querySelector('#mirror').getBoundingClientRect(); \
+         const top = document.elementFromPoint(r.left + r.width / 2, r.top + r.height / 2); \
+         return top && top.id; })()",
+    );
+    assert_eq!(over, json!("mirror"));
     page.press("#mirror");
     page.wait("studio.state.mirror");
     for side in ["source", "target"] {

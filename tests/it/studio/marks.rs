@@ -40,7 +40,7 @@ fn a_mark_is_a_dot_with_its_number_and_a_loupe() {
     assert_eq!(page.value("studio.loupe.canvas.hidden"), json!(true));
     page.hold(at, [x + 24.0, y + 16.0]);
     page.wait("!studio.loupe.canvas.hidden && studio.dragging === null");
-    probed(&page);
+    page.settle();
     // What is under the pointer is seen in its middle: the target, and the mark where it came to lie.
     let colours = page.value(
         "(() => { const c = studio.loupe.canvas; const d = c.getContext('2d').getImageData(0, 0, c.width, c.height).data; \
