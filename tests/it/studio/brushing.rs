@@ -28,8 +28,8 @@ fn stroke(wire: &mut Wire, brush: &str) {
 }
 
 fn exported(server: &Server, place: &Workplace, name: &str) -> Positions {
-    fs::write(place.path(name), download(server, "result")).unwrap();
-    let soup = mesh_core::io::read_soup(place.path(name)).unwrap();
+    fs::write(place.path(name), download(server, "result")).expect("it can be read and written");
+    let soup = mesh_core::io::read_soup(place.path(name)).expect("it can be read and written");
     soup.positions.into_iter().collect()
 }
 
