@@ -102,6 +102,7 @@ fn the_result_is_brushed_with_the_pointer() {
     page.wait("studio.views.result.shape && studio.state.can.drape");
     page.press("#drape");
     page.wait("studio.state.run.status === 'finished' && studio.state.can.brush && studio.shown.kind === 1");
+    page.wait("studio.shown.iteration === studio.state.run.iteration");
     let before = shown(&page);
     let [x, y] = middle(&page, "result");
     for (brush, n) in [("slide", 1), ("relax", 2), ("pull", 3)] {
