@@ -72,7 +72,10 @@ md.drape(*pair[:3], progress=lambda step: print(step.iteration, flush=True))
 
 @pytest.mark.parametrize("when", ["start", "steps"])
 def test_ctrl_c_stops_a_drape(when):
-    run = subprocess.Popen([sys.executable, "-c", CTRL_C], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    # A program that runs in the background of a shell starts with the signal ignored, and so would what it starts.
+    heard = lambda: signal.signal(signal.SIGINT, signal.SIG_DFL)  # noqa: E731
+    command = [sys.executable, "-c", CTRL_C]
+    run = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, preexec_fn=heard)
     assert run.stdout.readline() == "go\n"
     if when == "steps":
         run.stdout.readline()
