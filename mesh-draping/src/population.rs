@@ -87,7 +87,8 @@ impl Population {
     /// If the source has another number of vertices than the shapes.
     pub fn fit(&self, pair: &Pair) -> Positions {
         assert_eq!(pair.source.rest().len(), self.mean.len(), "one source");
-        let marks: Vec<Pull> = pair.landmarks.iter().map(|l| self.pull_to(l)).collect();
+        let followed = pair.landmarks.iter().filter(|l| l.is_followed());
+        let marks: Vec<Pull> = followed.map(|l| self.pull_to(l)).collect();
         let mut fitted = Fitted {
             coefficients: DVector::zeros(self.modes.len()),
             similarity: overlay(&self.mean, &self.mean),

@@ -163,8 +163,9 @@ pub(super) fn drape_files(args: &Args) -> anyhow::Result<Done<'_>> {
 /// The shape to start from, where one is given.
 fn start(args: &Args, pair: &Pair) -> anyhow::Result<Option<Positions>> {
     if let Some(folder) = &args.prior {
+        let followed = pair.landmarks.iter().filter(|l| l.is_followed());
         ensure!(
-            pair.landmarks.len() >= LEAST_FOR_PRIOR,
+            followed.count() >= LEAST_FOR_PRIOR,
             "--prior needs {LEAST_FOR_PRIOR} landmarks or more to find where the target stands"
         );
         let population = read_population(folder, &pair.source)?;

@@ -1,7 +1,7 @@
 //! A curve while it is drawn: its places come one by one, and only the whole is an edit.
 
 use anyhow::{ensure, Context as _, Result};
-use mesh_core::{Landmark, Point3};
+use mesh_core::{Landmark, Point3, Vector3};
 use mesh_draping::landmarks::cut;
 use serde_json::{json, Value};
 
@@ -18,6 +18,11 @@ const ENOUGH_TO_CLOSE: usize = 3;
 /// More places along a line are a mistake.
 const MAX_PLACES: usize = 1000;
 
+/// Whether a place so far from the first of `n` places closes their line, on a shape with this longest side.
+fn closes(n: usize, away: Vector3, side: f64) -> bool {
+    n >= ENOUGH_TO_CLOSE && away.norm() < CLOSES * side
+}
+
 impl Controller {
     /// Adds a place to the curve that is drawn; the numbers of places on source and target, nothing where the ray misses.
     pub(super) fn draw(&mut self, shape: Shape, ray: &Ray) -> Result<Value> {
@@ -31,19 +36,18 @@ impl Controller {
             Place::Source(place) => {
                 let at = place.mesh_point().position(rest);
                 let first = lines.source.first().copied();
+                let n = lines.source.len();
                 let closes = first.filter(|first| {
-                    let away = first.mesh_point().position(rest) - at;
-                    let is_near = away.norm() < CLOSES * displayed.source.frame.scale;
-                    is_near && lines.source.len() >= ENOUGH_TO_CLOSE
+                    let first = first.mesh_point().position(rest);
+                    closes(n, first - at, displayed.source.frame.scale)
                 });
                 lines.source.push(closes.unwrap_or(place));
             }
             Place::Target(point) => {
                 let first = lines.target.first().copied();
+                let n = lines.target.len();
                 let closes = first.filter(|&first| {
-                    let away = Point3::from(first) - point;
-                    let is_near = away.norm() < CLOSES * displayed.target.frame.scale;
-                    is_near && lines.target.len() >= ENOUGH_TO_CLOSE
+                    closes(n, Point3::from(first) - point, displayed.target.frame.scale)
                 });
                 lines.target.push(closes.unwrap_or(point.into()));
             }

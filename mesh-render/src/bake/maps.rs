@@ -57,8 +57,8 @@ impl Maps<'_> {
         let bake = Bake::new(source, draped, target, self.size)?;
         let mut findings = bake.findings().to_vec();
         if let (Some(path), Some(paint)) = (self.colors, &paint) {
-            bake.colors(paint)?.save(path, self.depth)?;
-            let share = bake.unpainted(paint);
+            let (texture, share) = bake.colors(paint)?;
+            texture.save(path, self.depth)?;
             if share > 0.0 {
                 findings.push(BakeFinding::Unpainted { share });
             }

@@ -39,7 +39,8 @@ const SIZES: [usize; 2] = [4, 16384];
 /// use mesh_render::bake::{Bake, Depth, Paint};
 /// let (draped, target) = (Source::read("draped.obj")?, Target::read("scan.obj")?);
 /// let bake = Bake::new(&draped, draped.rest(), &target, 2048)?;
-/// bake.colors(&Paint::read("scan.obj")?)?.save("texture.png", Depth::Eight)?;
+/// let (texture, _unpainted) = bake.colors(&Paint::read("scan.obj")?)?;
+/// texture.save("texture.png", Depth::Eight)?;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub struct Bake {
@@ -113,30 +114,22 @@ impl Bake {
         &self.findings
     }
 
-    /// The colours of the target, as its file has them.
+    /// The colours of the target, as its file has them, and the share of the texels whose place on the target has none, 0..=1.
     ///
     /// # Errors
     /// Colours of another shape than the target, or none at all the places that are met.
-    pub fn colors(&self, paint: &Paint) -> Result<Texture<3>, BakeError> {
+    pub fn colors(&self, paint: &Paint) -> Result<(Texture<3>, f64), BakeError> {
         paint.check(self.n_target_vertices)?;
-        let colors = self.painted(paint);
-        if colors.iter().all(Option::is_none) {
+        let color = |place: &Baked| paint.at(&self.sheet.place(&place.hit));
+        let colors: Vec<Option<Rgb>> = self.places.par_iter().map(color).collect();
+        let n_unpainted = colors.iter().filter(|c| c.is_none()).count();
+        if n_unpainted == colors.len() {
             return Err(paint.no_colors());
         }
+        let unpainted = n_unpainted as f64 / colors.len() as f64;
         let places = self.places.iter().zip(colors);
         let given = places.filter_map(|(place, color)| Some((place.at, color?)));
-        Ok(Texture::padded(self.size, given))
-    }
-
-    /// The share of the texels whose place on the target has no colour, 0..=1.
-    pub fn unpainted(&self, paint: &Paint) -> f64 {
-        let n = self.painted(paint).iter().filter(|c| c.is_none()).count();
-        n as f64 / self.places.len() as f64
-    }
-
-    fn painted(&self, paint: &Paint) -> Vec<Option<Rgb>> {
-        let color = |place: &Baked| paint.at(&self.sheet.place(&place.hit));
-        self.places.par_iter().map(color).collect()
+        Ok((Texture::padded(self.size, given), unpainted))
     }
 
     /// The smooth normals of the target in the coordinates of the result (object space): (n + 1) / 2.

@@ -61,7 +61,7 @@ fn every_texel_has_the_colour_of_its_place() {
     for (shift, is_turned) in [(0.0, false), (0.0, true), (3.0, false)] {
         let file = sheet(0.01, is_turned);
         let bake = bake(&source(shift), &file);
-        let texture = bake.colors(&Paint::of_file(&file).unwrap()).unwrap();
+        let (texture, _) = bake.colors(&Paint::of_file(&file).unwrap()).unwrap();
         for y in 0..SIZE {
             for x in 0..SIZE {
                 let centre = |k: usize| (k as f32 + 0.5) / SIZE as f32;

@@ -46,7 +46,7 @@ fn a_painted_creature_has_its_colours_in_the_texture() -> Result<(), Box<dyn Err
     // What is left at the true places is rounding and the target's triangles; at those of a short drape, its drift.
     let shapes = [("truth", &truth, 0.004), ("draped", &outcome.draped, 0.015)];
     for (name, shape, most) in shapes {
-        let texture = Bake::new(&source, shape, &target, SIZE)?.colors(&paint)?;
+        let (texture, _) = Bake::new(&source, shape, &target, SIZE)?.colors(&paint)?;
         let error = error(&texture, &right);
         println!("{name}: mean error of a colour {error:.4} of 1");
         assert!(error < most, "{name}: {error}");
@@ -124,7 +124,8 @@ fn right(source: &Source) -> Result<Texture<3>, Box<dyn Error>> {
         let rest = bounds.min + at * bounds.longest_side();
         paint_at(&rest, source).map(|c| c as f32)
     };
-    Ok(bake.colors(&paint)?.map(paint_of))
+    let (texture, _) = bake.colors(&paint)?;
+    Ok(texture.map(paint_of))
 }
 
 /// The mean difference of a sample.

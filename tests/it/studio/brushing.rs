@@ -8,7 +8,7 @@ use serde_json::{json, Value};
 use super::browser::{browser, Page};
 use super::page::{middle, shown};
 use super::server::{Server, SHORT};
-use super::wire::{download, Wire};
+use super::wire::{download, replays_to, Wire};
 use crate::support::Workplace;
 
 /// A dab on the front of the result.
@@ -75,12 +75,7 @@ fn a_brushed_result_replays_to_the_same_bits() {
     }
     stroke(&mut wire, "slide");
     let result = download(&server, "result");
-    fs::write(place.path("exported.json"), download(&server, "session")).unwrap();
-    place.drape("replay exported.json -o replayed.obj").well();
-    assert!(
-        place.read("replayed.obj").as_bytes() == result,
-        "the replay came to another result"
-    );
+    replays_to(&place, &server, &result);
     // What no brush has is refused.
     let mut wild = dab("pull", [0.0, 0.0], true);
     wild["edit"]["radius"] = json!(-1.0);

@@ -7,7 +7,7 @@ use serde_json::{json, Value};
 use super::browser::{browser, Page};
 use super::page::{find, probed, Place};
 use super::server::{Server, SHORT};
-use super::wire::{download, Wire};
+use super::wire::{download, replays_to, Wire};
 use crate::support::Workplace;
 
 /// A place of the curve that is drawn: on the front of a ball, whose views are both in frames of their boxes.
@@ -47,12 +47,7 @@ fn a_session_with_a_curve_and_weights_is_replayed_to_the_bit() {
     wire.ask(json!({ "command": "drape" }));
     wire.state(|s| s["run"]["status"] == "finished");
     let result = download(&server, "result");
-    fs::write(folder.path("exported.json"), download(&server, "session")).unwrap();
-    folder.drape("replay exported.json -o replayed.obj").well();
-    assert!(
-        folder.read("replayed.obj").as_bytes() == result,
-        "the replay came to another result"
-    );
+    replays_to(&folder, &server, &result);
     fs::write(
         folder.path("landmarks.json"),
         download(&server, "landmarks"),

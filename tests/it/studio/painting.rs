@@ -7,7 +7,7 @@ use serde_json::{json, Value};
 use super::browser::{browser, Page};
 use super::page::middle;
 use super::server::{Server, SHORT};
-use super::wire::{download, Wire};
+use super::wire::{download, replays_to, Wire};
 use crate::support::Workplace;
 
 /// A dab on the front of the source.
@@ -60,12 +60,7 @@ fn painted_weights_are_those_of_the_command_line() {
         place.read("out.obj").as_bytes() == result,
         "the command line came to another result"
     );
-    fs::write(place.path("exported.json"), download(&server, "session")).unwrap();
-    place.drape("replay exported.json -o replayed.obj").well();
-    assert!(
-        place.read("replayed.obj").as_bytes() == result,
-        "the replay came to another result"
-    );
+    replays_to(&place, &server, &result);
     // Without them the result is another one.
     place.transfer("").well();
     assert!(place.read("out.obj").as_bytes() != result);
@@ -120,12 +115,7 @@ fn what_is_painted_rigid_moves_as_one_body_here_and_from_the_command_line() {
         place.read("out.obj").as_bytes() == result,
         "the command line came to another result"
     );
-    fs::write(place.path("exported.json"), download(&server, "session")).unwrap();
-    place.drape("replay exported.json -o replayed.obj").well();
-    assert!(
-        place.read("replayed.obj").as_bytes() == result,
-        "the replay came to another result"
-    );
+    replays_to(&place, &server, &result);
     wire.ask(json!({ "edit": { "do": "clear_rigid" } }));
     assert!(rigid(&mut wire).is_null());
 }
