@@ -53,14 +53,7 @@ pub(crate) struct DisplayedTarget {
     pub(crate) looks: DisplayedLooks,
     /// The axis across which it is most nearly symmetric.
     pub(crate) symmetry: usize,
-    picked: PickSurface,
     snap_points: OnceLock<SnapPoints>,
-}
-
-/// What is seen and picked: all that is in the file.
-enum PickSurface {
-    Triangles(TriangleBvh),
-    Points(Vec<Point3>),
 }
 
 impl DisplayedPair {
@@ -198,8 +191,10 @@ impl DisplayedTarget {
 
     fn new(target: Target, looks: Looks) -> Result<Self> {
         let frame = UnitFrame::of(target.judged().bounds());
-        let (picked, buffers, shown) = if target.is_cloud() {
-            cloud(target.vertices(), target.judged().as_ref(), &frame)
+        let (buffers, shown) = if target.is_cloud() {
+            let normals = normals(target.vertices(), target.judged().as_ref());
+            let buffers = DisplayBuffers::of_cloud(&frame, target.vertices(), &normals);
+            (buffers, Vec::new())
         } else {
             triangles(target.soup(), &frame)?
         };
@@ -208,7 +203,6 @@ impl DisplayedTarget {
             looks: DisplayedLooks::new(looks, &target.soup().faces, rows, &shown),
             symmetry: target_symmetry(&target).axis,
             snap_points: OnceLock::new(),
-            picked,
             frame,
             buffers,
             target,
@@ -217,14 +211,14 @@ impl DisplayedTarget {
 
     /// What marks snap to.
     pub(crate) fn snap_points(&self) -> &SnapPoints {
-        self.snap_points.get_or_init(|| match &self.picked {
-            PickSurface::Triangles(_) => {
-                let soup = self.target.soup();
-                SnapPoints::of_faces(soup.positions.clone(), &soup.faces)
+        self.snap_points.get_or_init(|| {
+            let soup = self.target.soup();
+            let points = soup.positions.clone();
+            if self.target.is_cloud() {
+                let normals = normals(&points, self.judged());
+                return SnapPoints::of_cloud(points, normals);
             }
-            PickSurface::Points(points) => {
-                SnapPoints::of_cloud(points.clone(), normals(points, self.judged()))
-            }
+            SnapPoints::of_faces(points, &soup.faces)
         })
     }
 
@@ -233,30 +227,19 @@ impl DisplayedTarget {
         self.target.judged().as_ref()
     }
 
-    /// The first place that a ray in the frame of the view meets.
+    /// The first place that a ray in the frame of the view meets, of all that is in the file.
     pub(crate) fn pick(&self, ray: &Ray) -> Option<Point3> {
-        match &self.picked {
-            PickSurface::Triangles(bvh) => {
-                let location = pick::first_hit(bvh, &self.frame, ray)?;
-                let Location::Triangle { index, barycentric } = location else {
-                    return None;
-                };
-                let corners = bvh.triangle(index);
-                let sum: Vector3 = (0..3).map(|k| corners[k].coords * barycentric[k]).sum();
-                Some(Point3::from(sum))
-            }
-            PickSurface::Points(points) => pick::front_point(points, &self.frame, ray),
-        }
+        let Some(bvh) = self.target.whole() else {
+            return pick::front_point(self.target.vertices(), &self.frame, ray);
+        };
+        let location = pick::first_hit(bvh, &self.frame, ray)?;
+        let Location::Triangle { index, barycentric } = location else {
+            return None;
+        };
+        let corners = bvh.triangle(index);
+        let sum: Vector3 = (0..3).map(|k| corners[k].coords * barycentric[k]).sum();
+        Some(Point3::from(sum))
     }
-}
-
-fn cloud(
-    points: &[Point3],
-    judged: &dyn TargetSurface,
-    frame: &UnitFrame,
-) -> (PickSurface, DisplayBuffers, Vec<ShownTriangle>) {
-    let buffers = DisplayBuffers::of_cloud(frame, points, &normals(points, judged));
-    (PickSurface::Points(points.to_vec()), buffers, Vec::new())
 }
 
 /// The normals of a cloud at its points.
@@ -296,7 +279,7 @@ fn source_looks(source: &Source) -> DisplayedLooks {
 fn triangles(
     soup: &PolygonSoup,
     frame: &UnitFrame,
-) -> Result<(PickSurface, DisplayBuffers, Vec<ShownTriangle>)> {
+) -> Result<(DisplayBuffers, Vec<ShownTriangle>)> {
     let (triangles, parents): (Vec<[u32; 3]>, Vec<usize>) =
         if soup.faces.iter().all(|f| f.len() == 3) {
             let corners = soup.faces.iter().map(|f| [f[0], f[1], f[2]]);
@@ -316,10 +299,5 @@ fn triangles(
             corners: corners.map(|v| v as usize),
         });
     let shown = shown.collect();
-    let corners = triangles
-        .iter()
-        .map(|t| t.map(|v| soup.positions[v as usize]));
-    let bvh = TriangleBvh::new(corners.collect());
-    let buffers = DisplayBuffers::of_mesh(frame, soup, triangles);
-    Ok((PickSurface::Triangles(bvh), buffers, shown))
+    Ok((DisplayBuffers::of_mesh(frame, soup, triangles), shown))
 }

@@ -13,7 +13,7 @@ use crate::broadcast::Broadcast;
 use crate::controller::{Controller, ControllerParts};
 use crate::displayed::{DisplayedSource, DisplayedTarget};
 use crate::server::{serve, App, Guard};
-use crate::session::{self, InputRecord, Mark, Session};
+use crate::session::{self, InputRecord, Session};
 
 /// What to open.
 #[derive(Clone, Debug)]
@@ -238,10 +238,7 @@ fn adopt_landmarks(path: &Path, session: &mut Session, inputs: &Inputs) -> Resul
         .zip(inputs.target.clone())
         .context("landmarks need a source and a target")?;
     let landmarks = landmarks::read(path, &source.source, &target.target)?;
-    let marks: Vec<Mark> = landmarks
-        .iter()
-        .map(|l| Mark::of(session.fresh_id(), l))
-        .collect();
+    let marks = session.marks_of(&landmarks);
     session.edit(|d| d.marks = marks);
     Ok(())
 }

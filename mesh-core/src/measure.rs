@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix3, SymmetricEigen};
 
-use crate::{Point3, Positions, Triangulation, Vector3, VertexData};
+use crate::{Point3, Positions, Triangulation, Vector3, VertexData, VertexId};
 
 /// Twice the area of a triangle times its unit normal: `(b − a) × (c − a)`.
 #[inline]
@@ -80,6 +80,14 @@ pub fn vertex_normals(triangulation: &Triangulation, x: &Positions) -> VertexDat
         }
     }
     normals.map(|n| n.try_normalize(f64::MIN_POSITIVE).unwrap_or_default())
+}
+
+/// The entry of [`vertex_normals`] for one vertex, to the bit, at the cost of its own triangles.
+pub fn vertex_normal(triangulation: &Triangulation, x: &Positions, v: VertexId) -> Vector3 {
+    let triangles = triangulation.vertex_triangles(v).iter();
+    let corners = triangles.map(|&t| triangulation.triangles()[t as usize].map(|v| x[v]));
+    let sum = corners.fold(Vector3::zeros(), |sum, c| sum + area_vector(c));
+    sum.try_normalize(f64::MIN_POSITIVE).unwrap_or_default()
 }
 
 /// Axis-aligned box. Empty when any `min` exceeds its `max`.
@@ -208,5 +216,15 @@ mod tests {
         };
         let (mesh, x) = soup.into_halfedge().unwrap();
         assert_eq!(mean_edge_length(&Triangulation::new(&mesh, &x), &x), 4.0);
+    }
+
+    #[test]
+    fn a_normal_alone_is_that_among_all() {
+        for soup in [crate::shapes::icosphere(2), crate::shapes::open_grid(3, 2)] {
+            let (mesh, x) = soup.into_halfedge().unwrap();
+            let t = Triangulation::new(&mesh, &x);
+            let all = vertex_normals(&t, &x);
+            assert!(x.ids().all(|v| vertex_normal(&t, &x, v) == all[v]));
+        }
     }
 }

@@ -1,6 +1,7 @@
 //! Seams closed: vertices at one place become one, and values go back to all of them.
 
 use std::collections::HashMap;
+use std::hash::{BuildHasherDefault, Hash, Hasher};
 
 use crate::{Point3, PolygonSoup};
 
@@ -85,13 +86,46 @@ fn is_below_rounding(points: &[Point3], eps: f64) -> bool {
     eps.is_nan() || eps <= largest * (f64::EPSILON / 4.0)
 }
 
+/// The bits of a point's coordinates.
+#[derive(PartialEq, Eq)]
+struct Place([u64; 3]);
+
+impl Hash for Place {
+    fn hash<H: Hasher>(&self, state: &mut H) {
+        self.0.iter().for_each(|&word| state.write_u64(word));
+    }
+}
+
+/// Mixes whole words: a scan has millions of corners, and the hash of the standard library takes most of the time there.
+/// What it tells decides where a place is looked up, never a result.
+#[derive(Default)]
+struct PlaceHasher(u64);
+
+impl Hasher for PlaceHasher {
+    fn finish(&self) -> u64 {
+        self.0
+    }
+
+    fn write(&mut self, bytes: &[u8]) {
+        bytes.iter().for_each(|&b| self.write_u64(u64::from(b)));
+    }
+
+    /// The finaliser of splitmix64, word after word.
+    fn write_u64(&mut self, word: u64) {
+        let mut z = (self.0 ^ word).wrapping_add(0x9e37_79b9_7f4a_7c15);
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        self.0 = z ^ (z >> 31);
+    }
+}
+
 fn weld_equal(points: &[Point3]) -> (Vec<Point3>, Vec<u32>) {
     let mut kept = Vec::new();
-    let mut row_at = HashMap::with_capacity(points.len());
+    let mut row_at: HashMap<Place, u32, BuildHasherDefault<PlaceHasher>> = HashMap::default();
     let mut row_of = Vec::with_capacity(points.len());
     for p in points {
         // Adding zero makes −0 and +0 one.
-        let key = <[f64; 3]>::from(p.coords).map(|c| (c + 0.0).to_bits());
+        let key = Place(<[f64; 3]>::from(p.coords).map(|c| (c + 0.0).to_bits()));
         let row = *row_at.entry(key).or_insert_with(|| {
             kept.push(*p);
             kept.len() as u32 - 1

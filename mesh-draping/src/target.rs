@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use mesh_core::io::{self, MeshFile};
 use mesh_core::{
-    Location, Point3, PointCloud, PolygonSoup, SurfelCloud, TargetSurface, TriangleSoup,
-    Triangulation, Vector3,
+    Location, Point3, PointCloud, PolygonSoup, SurfelCloud, TargetSurface, TriangleBvh,
+    TriangleSoup, Triangulation, Vector3,
 };
 
 use crate::error::{check_extent, in_file, MeshProblem};
@@ -19,6 +19,8 @@ use crate::{Error, Note, Shape};
 pub struct Target {
     path: Option<PathBuf>,
     soup: Arc<PolygonSoup>,
+    /// All triangles of a surface, what is left out included.
+    whole: Option<Arc<TriangleSoup>>,
     judged: Arc<dyn TargetSurface>,
     draped_over: Arc<dyn TargetSurface>,
     notes: Arc<[Note]>,
@@ -68,26 +70,29 @@ impl Target {
                 .flatten()
                 .map(|&v| &soup.positions[v as usize]),
         )?;
-        let mut surface = TriangleSoup::new(soup.clone()).map_err(MeshProblem::from)?;
-        let strays = surface.strays();
+        let whole = Arc::new(TriangleSoup::new(soup.clone()).map_err(MeshProblem::from)?);
+        let strays = whole.strays();
+        let rows: Vec<u32> = strays.rows().collect();
+        // Most targets have none, and are not built twice.
+        let kept = (!rows.is_empty()).then(|| whole.without(&rows)).flatten();
         let mut notes = Vec::new();
-        if let Some(kept) = surface.without(&strays.rows().collect::<Vec<_>>()) {
-            let counts = [&strays.slivers, &strays.crumbs, &strays.hidden].map(Vec::len);
-            if counts.iter().any(|&n| n > 0) {
-                let [n_slivers, n_crumbs, n_hidden] = counts;
+        let surface = match kept {
+            None => Arc::clone(&whole),
+            Some(kept) => {
                 notes.push(Note::TrianglesLeftOut {
-                    n_slivers,
-                    n_crumbs,
-                    n_hidden,
-                    share: 1.0 - kept.area() / surface.area(),
+                    n_slivers: strays.slivers.len(),
+                    n_crumbs: strays.crumbs.len(),
+                    n_hidden: strays.hidden.len(),
+                    share: 1.0 - kept.area() / whole.area(),
                 });
-                surface = kept;
+                Arc::new(kept)
             }
-        }
-        let surface: Arc<dyn TargetSurface> = Arc::new(surface);
+        };
+        let surface: Arc<dyn TargetSurface> = surface;
         Ok(Self {
             path: None,
             soup: Arc::new(soup),
+            whole: Some(whole),
             draped_over: Arc::clone(&surface),
             judged: surface,
             notes: notes.into(),
@@ -128,6 +133,7 @@ impl Target {
                 positions: points,
                 faces: Vec::new(),
             }),
+            whole: None,
             draped_over: Arc::new(SurfelCloud::new(over)),
             judged: cloud,
             notes: notes.into(),
@@ -147,6 +153,11 @@ impl Target {
     /// The points of the file, in its order.
     pub fn vertices(&self) -> &[Point3] {
         &self.soup.positions
+    }
+
+    /// The triangles of the file, what is left out included: what a ray from outside meets. None for a cloud.
+    pub fn whole(&self) -> Option<&TriangleBvh> {
+        self.whole.as_ref().map(|whole| whole.bvh())
     }
 
     /// What results are judged by.

@@ -61,7 +61,6 @@ impl Controller {
             iteration: 0,
         };
         self.leave_run();
-        self.session.begin_strokes(Vec::new());
         self.broadcast.forget_drape();
         self.start_runner(log, None)
     }
@@ -136,9 +135,10 @@ impl Controller {
 
     /// Ends the drape and forgets it.
     pub(super) fn leave_run(&mut self) {
+        // A drape that was lost leaves its strokes, too.
+        self.session.begin_strokes(Vec::new());
         if self.run.take().is_some() {
             self.session.run = None;
-            self.session.begin_strokes(Vec::new());
             // Where it cannot be removed, the session says that there is no drape.
             drop(std::fs::remove_file(self.checkpoint_path()));
         }

@@ -22,6 +22,10 @@ impl Controller {
         }
         match edit {
             Edit::Draw { shape, ray } => return self.draw(shape, &ray),
+            Edit::TakeUpCurve { landmark } => {
+                self.take_up_curve(landmark)?;
+                return Ok(Value::Null);
+            }
             Edit::EndCurve => return self.end_curve(),
             Edit::CancelCurve => return Ok(self.cancel_curve()),
             Edit::Place { shape, ray, snap } => return self.place(shape, &ray, snap),
@@ -67,11 +71,17 @@ impl Controller {
             }
             Edit::Undo => {
                 self.situation().check(Action::Undo)?;
-                self.session.undo();
+                match &mut self.drawing {
+                    Some(drawing) => drawing.undo(),
+                    None => self.session.undo(),
+                }
             }
             Edit::Redo => {
                 self.situation().check(Action::Redo)?;
-                self.session.redo();
+                match &mut self.drawing {
+                    Some(drawing) => drawing.redo(),
+                    None => self.session.redo(),
+                }
             }
         }
         self.edited();
@@ -186,13 +196,7 @@ impl Controller {
             "{MAX_MARKS} landmarks are enough"
         );
         self.finish_drag();
-        let points = Landmark::marked(landmarks);
-        let mut marks: Vec<Mark> = points
-            .map(|l| Mark::of(self.session.fresh_id(), l))
-            .collect();
-        for (curve, _) in Curve::runs(landmarks) {
-            marks.push(Mark::of_curve(self.session.fresh_id(), curve));
-        }
+        let marks = self.session.marks_of(landmarks);
         self.session.edit(|d| d.marks = marks);
         self.edited();
         Ok(())

@@ -3,6 +3,7 @@
 mod brush;
 mod can;
 mod commands;
+mod curve_twins;
 mod drawing;
 mod edits;
 mod history;
@@ -40,7 +41,7 @@ use crate::kept_files::KeptFiles;
 use crate::latest::Latest;
 use crate::preview::{live_preview, preview, PreviewJob, PreviewOf};
 use crate::runner::{Runner, Update};
-use crate::session::{Document, InputRecord, Lines, RunLog, Session};
+use crate::session::{Cuts, Document, InputRecord, RunLog, Session};
 use crate::shapes::Shapes;
 
 /// Edits are on disk after this long.
@@ -144,7 +145,11 @@ pub(crate) struct Controller {
     /// The document before the drag that goes on.
     dragged_from: Option<Document>,
     /// The curve that is being drawn.
-    drawing: Option<Lines>,
+    drawing: Option<drawing::Drawing>,
+    /// The curves of the document as landmarks.
+    cuts: Cuts,
+    /// The names of the sessions that were set aside.
+    aside: Vec<String>,
     /// The stroke of the brush that goes on.
     stroke: Option<paint::Stroke>,
     /// The stroke on the result that goes on.
@@ -162,6 +167,7 @@ impl Controller {
         let (inbox, messages) = channel();
         let previewed = inbox.clone();
         let preset = Preset::from_toml(&parts.session.document.settings)?;
+        let files = KeptFiles::beside(&parts.session_path);
         let mut controller = Self {
             figures: Arc::new(judge(Arc::clone(&parts.broadcast))),
             preview: preview(Arc::clone(&parts.broadcast), move |number, found| {
@@ -171,7 +177,8 @@ impl Controller {
             inbox: inbox.clone(),
             broadcast: parts.broadcast,
             session: parts.session,
-            files: KeptFiles::beside(&parts.session_path),
+            aside: files.aside_names(),
+            files,
             session_path: parts.session_path,
             displayed: both(parts.source.as_ref(), parts.target.as_ref()),
             source: parts.source,
@@ -186,6 +193,7 @@ impl Controller {
             notice: parts.notice,
             dragged_from: None,
             drawing: None,
+            cuts: Cuts::default(),
             stroke: None,
             brushing: None,
             shown_bvh: None,
@@ -265,13 +273,14 @@ impl Controller {
 
     /// All that decides what can be done.
     fn situation(&self) -> Situation {
+        let drawing = self.drawing.as_ref();
         Situation {
             has_inputs: self.displayed.is_some(),
             run: self.run.as_ref().map(|run| run.status),
             is_pending: self.are_marks_pending() || self.are_parts_pending(),
             has_landmarks: !self.session.document.marks.is_empty(),
-            has_undo: self.session.can_undo(),
-            has_redo: self.session.can_redo(),
+            has_undo: drawing.map_or(self.session.can_undo(), drawing::Drawing::can_undo),
+            has_redo: drawing.map_or(self.session.can_redo(), drawing::Drawing::can_redo),
         }
     }
 
@@ -282,6 +291,7 @@ impl Controller {
     }
 
     fn publish(&mut self) {
+        self.cut_curves();
         self.revision += 1;
         let state = self.state().to_string();
         self.broadcast.state.send_replace(Arc::from(state));
@@ -300,6 +310,7 @@ impl Controller {
         let Some(displayed) = self.displayed.clone() else {
             return;
         };
+        self.cut_curves();
         self.n_previews = self.n_previews.wrapping_add(1);
         let is_pending = self.are_marks_pending();
         let shown = match &self.run {
@@ -344,11 +355,17 @@ impl Controller {
         }
     }
 
+    /// Finds the landmarks of curves that changed.
+    fn cut_curves(&mut self) {
+        if let Some(source) = &self.source {
+            let marks = &self.session.document.marks;
+            self.cuts.renew(marks, &source.source);
+        }
+    }
+
+    /// The landmarks as they are, those of curves last.
     fn landmarks(&self) -> Vec<Landmark> {
-        let source = self.source.as_ref();
-        source.map_or_else(Vec::new, |source| {
-            crate::session::landmarks(&self.session.document.marks, &source.source)
-        })
+        self.cuts.landmarks(&self.session.document.marks)
     }
 
     fn snapshot(&self) -> Snapshot {

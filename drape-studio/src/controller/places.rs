@@ -2,7 +2,7 @@
 
 use anyhow::{bail, ensure, Result};
 use mesh_core::{MeshPoint, Point3, VertexId};
-use mesh_draping::landmarks::{counterpart, MirrorPlanes, Plane};
+use mesh_draping::landmarks::counterpart;
 use mesh_draping::{SnapPoints, SNAP_REACH};
 use serde_json::{json, Value};
 
@@ -95,8 +95,7 @@ impl Controller {
         let mut twin = None;
         if let Some(mark) = document.marks.iter_mut().find(|m| m.id == id) {
             place.put(mark);
-            let axes = document.mirror.filter(|_| n_marks < MAX_MARKS);
-            twin = axes.and_then(|axes| self.twin(mark, axes, twin_id));
+            twin = self.twin(mark, twin_id).filter(|_| n_marks < MAX_MARKS);
         }
         if let Some(twin) = twin {
             self.add_twin(&mut document.marks, twin);
@@ -111,7 +110,7 @@ impl Controller {
     fn half_made(&self, place: &Place) -> Option<u32> {
         let half = || {
             let marks = self.session.document.marks.iter();
-            marks.filter(|m| !m.is_complete())
+            marks.filter(|m| m.is_half_made())
         };
         let waiting = half().find(|mark| place.is_missing_of(mark));
         let only = half().next().filter(|_| half().count() == 1);
@@ -168,14 +167,9 @@ impl Controller {
     }
 
     /// The mirror image of a landmark that is complete, unless it lies on the mirror.
-    fn twin(&self, mark: &Mark, [of_source, of_target]: [usize; 2], id: u32) -> Option<Mark> {
-        let shapes = &self.displayed.as_ref()?.shapes;
-        let planes = MirrorPlanes {
-            source: Plane::through_middle(&shapes.source.bounds(), of_source),
-            target: Plane::through_middle(&shapes.target.judged().bounds(), of_target),
-        };
-        let pair = shapes.pair(Vec::new());
-        let twin = counterpart(&pair, &mark.landmark()?, &planes)?;
+    fn twin(&self, mark: &Mark, id: u32) -> Option<Mark> {
+        let pair = self.displayed.as_ref()?.shapes.pair(Vec::new());
+        let twin = counterpart(&pair, &mark.landmark()?, &self.mirror_planes()?)?;
         Some(Mark::of(id, &twin))
     }
 

@@ -147,6 +147,10 @@ pub(crate) enum Edit {
         shape: Shape,
         ray: Ray,
     },
+    /// Goes on with a curve that waits for one of its lines.
+    TakeUpCurve {
+        landmark: u32,
+    },
     /// Takes the curve as it is drawn: one edit.
     EndCurve,
     /// Gives it up.

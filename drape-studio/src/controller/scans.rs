@@ -77,6 +77,7 @@ impl Controller {
             self.save();
             self.files
                 .set_aside(&name, &self.session, &self.checkpoint_path())?;
+            self.aside = self.files.aside_names();
         }
         self.leave_run();
         Ok(())
@@ -109,8 +110,10 @@ impl Controller {
         let waiting = self.session.queue.iter();
         let waiting: Vec<String> = waiting.map(|r| file_name(&r.path)).collect();
         let present = self.session.target.as_ref().map(name_of);
-        let mut aside = self.files.aside_names();
-        aside.retain(|name| Some(name) != present.as_ref());
+        let aside = self.aside.iter();
+        let aside: Vec<&String> = aside
+            .filter(|name| Some(*name) != present.as_ref())
+            .collect();
         json!({ "queue": waiting, "aside": aside })
     }
 }

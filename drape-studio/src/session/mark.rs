@@ -24,7 +24,7 @@ pub(crate) struct Mark {
     /// What it counts beside the others, from 0.
     #[serde(default = "one", skip_serializing_if = "is_one")]
     pub(crate) weight: f64,
-    /// The two lines, where it is a curve: it has no other places then.
+    /// The two lines, where it is a curve: it has no other places then. A line without places waits to be drawn.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) curve: Option<Lines>,
 }
@@ -38,9 +38,33 @@ pub(crate) struct Lines {
 }
 
 impl Lines {
-    /// Whether the line on the source ends where it began.
+    /// Those of a curve.
+    pub(crate) fn of(curve: &Curve) -> Self {
+        Self {
+            source: curve.source.iter().map(SourcePlace::of).collect(),
+            target: curve.target.iter().map(|&p| p.into()).collect(),
+        }
+    }
+
+    /// The curve along them, as far as they are drawn.
+    pub(crate) fn curve(&self, name: Option<String>, weight: f64) -> Curve {
+        Curve {
+            name,
+            source: self.source.iter().map(SourcePlace::mesh_point).collect(),
+            target: self.target.iter().map(|&p| p.into()).collect(),
+            weight,
+        }
+    }
+
+    /// Whether neither line is missing.
+    pub(crate) fn is_complete(&self) -> bool {
+        !self.source.is_empty() && !self.target.is_empty()
+    }
+
+    /// Whether a line ends where it began.
     pub(crate) fn is_closed(&self) -> bool {
-        self.source.len() > 1 && self.source.first() == self.source.last()
+        let source = self.source.len() > 1 && self.source.first() == self.source.last();
+        source || self.target.len() > 1 && self.target.first() == self.target.last()
     }
 }
 
@@ -108,28 +132,28 @@ impl Mark {
         Self {
             name: curve.name.clone().unwrap_or_default(),
             weight: curve.weight,
-            curve: Some(Lines {
-                source: curve.source.iter().map(SourcePlace::of).collect(),
-                target: curve.target.iter().map(|&p| p.into()).collect(),
-            }),
+            curve: Some(Lines::of(curve)),
             ..Self::empty(id)
         }
     }
 
-    /// The curve, if it is one.
+    /// The curve, if it is one and neither line is missing.
     pub(crate) fn curve(&self) -> Option<Curve> {
-        let lines = self.curve.as_ref()?;
-        Some(Curve {
-            name: self.given_name(),
-            source: lines.source.iter().map(SourcePlace::mesh_point).collect(),
-            target: lines.target.iter().map(|&p| p.into()).collect(),
-            weight: self.weight,
-        })
+        let lines = self.curve.as_ref().filter(|lines| lines.is_complete())?;
+        Some(lines.curve(self.given_name(), self.weight))
     }
 
     /// Whether nothing is missing.
     pub(crate) fn is_complete(&self) -> bool {
-        self.curve.is_some() || self.landmark().is_some()
+        match &self.curve {
+            Some(lines) => lines.is_complete(),
+            None => self.landmark().is_some(),
+        }
+    }
+
+    /// Whether it is a landmark one of whose places is missing.
+    pub(crate) fn is_half_made(&self) -> bool {
+        self.curve.is_none() && !self.is_complete()
     }
 
     /// Its places on the source.
@@ -147,7 +171,7 @@ impl Mark {
         }
     }
 
-    fn given_name(&self) -> Option<String> {
+    pub(crate) fn given_name(&self) -> Option<String> {
         Some(self.name.clone()).filter(|name| !name.is_empty())
     }
 
@@ -197,7 +221,7 @@ pub(crate) fn landmarks(marks: &[Mark], source: &Source) -> Vec<Landmark> {
 pub(crate) fn numbers(marks: &[Mark]) -> impl Iterator<Item = Option<usize>> + '_ {
     let (mut row, mut curve) = (0.., 0..);
     marks.iter().map(move |mark| match mark.curve {
-        Some(_) => curve.next(),
+        Some(_) => mark.curve().and_then(|_| curve.next()),
         None => mark.landmark().and_then(|_| row.next()),
     })
 }

@@ -1,5 +1,6 @@
 //! A session: inputs, landmarks, settings, every edit, and the drape in progress.
 
+mod cuts;
 mod file;
 mod kept;
 mod log;
@@ -7,6 +8,7 @@ mod mark;
 mod painted;
 mod strokes;
 
+pub(crate) use cuts::Cuts;
 pub(crate) use file::{fnv1a, read, InputRecord};
 pub(crate) use kept::{Kept, NamedSettings};
 pub(crate) use log::{Change, Event, RunLog};
@@ -15,6 +17,7 @@ pub(crate) use painted::{painted_rigid, RIGID_FOLDER};
 
 use serde::{Deserialize, Serialize};
 
+use mesh_core::{Curve, Landmark};
 use mesh_draping::{Parts, Stroke};
 
 /// How many edits can be undone.
@@ -145,19 +148,35 @@ impl Session {
         id
     }
 
-    /// Another target comes: the landmarks wait in order for their places on it; curves are drawn anew.
+    /// Marks of landmarks, and after them those of the curves that some of them were cut from.
+    pub(crate) fn marks_of(&mut self, landmarks: &[Landmark]) -> Vec<Mark> {
+        let points = Landmark::marked(landmarks).map(|l| Mark::of(self.fresh_id(), l));
+        let mut marks: Vec<Mark> = points.collect();
+        let curves = Curve::runs(landmarks).map(|(c, _)| Mark::of_curve(self.fresh_id(), c));
+        marks.extend(curves);
+        marks
+    }
+
+    /// Another target comes: the landmarks and curves wait in order for their places on it.
     pub(crate) fn wait_for_target(&mut self) {
         let marks = &mut self.document.marks;
-        marks.retain(|mark| mark.source.is_some());
-        marks.iter_mut().for_each(|mark| mark.target = None);
+        marks.retain(|mark| mark.source_places().next().is_some());
+        for mark in marks {
+            mark.target = None;
+            mark.curve.iter_mut().for_each(|l| l.target.clear());
+        }
         self.forget_edits();
     }
 
-    /// Another source comes: the landmarks wait in order for their places on it; curves are drawn anew.
+    /// Another source comes: the landmarks and curves wait in order for their places on it.
     pub(crate) fn wait_for_source(&mut self) {
         let marks = &mut self.document.marks;
-        marks.retain(|mark| mark.target.is_some());
-        marks.iter_mut().for_each(|mark| mark.source = None);
+        let has_target = |lines: &Lines| !lines.target.is_empty();
+        marks.retain(|m| m.target.is_some() || m.curve.as_ref().is_some_and(has_target));
+        for mark in marks {
+            mark.source = None;
+            mark.curve.iter_mut().for_each(|l| l.source.clear());
+        }
         self.document.parts = Parts::default();
         self.forget_edits();
     }
@@ -215,5 +234,30 @@ mod tests {
             session.edit(|d| d.marks = vec![mark(id)]);
         }
         assert_eq!(session.undo.len(), MAX_UNDO);
+    }
+
+    #[test]
+    fn curves_wait_for_their_lines_on_another_scan() {
+        let place = SourcePlace {
+            vertices: [0, 1, 2],
+            weights: [1.0, 0.0, 0.0],
+        };
+        let lines = |n: usize, m: usize| Lines {
+            source: vec![place; n],
+            target: vec![[0.5; 3]; m],
+        };
+        let curve = |id, lines| Mark {
+            curve: Some(lines),
+            ..Mark::empty(id)
+        };
+        let mut session = Session::new(String::new());
+        session.document.marks = vec![curve(1, lines(3, 2)), curve(2, lines(0, 2)), mark(3)];
+        session.wait_for_target();
+        assert_eq!(session.document.marks, [curve(1, lines(3, 0))]);
+        assert!(!session.document.marks[0].is_complete());
+        assert!(!session.document.marks[0].is_half_made());
+        session.document.marks = vec![curve(1, lines(3, 2)), curve(2, lines(3, 0))];
+        session.wait_for_source();
+        assert_eq!(session.document.marks, [curve(1, lines(0, 2))]);
     }
 }

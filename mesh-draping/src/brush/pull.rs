@@ -1,6 +1,6 @@
 //! Towards the target.
 
-use mesh_core::measure::vertex_normals;
+use mesh_core::measure::vertex_normal;
 use mesh_core::{NormalSign, Positions};
 
 use super::ball::Ball;
@@ -13,13 +13,13 @@ use crate::Pair;
 pub(super) fn pull(pair: &Pair, ball: &Ball, x: &mut Positions) {
     let target = pair.target.draped_over();
     let closest = target.closest_points(&ball.points(x));
-    let normals = vertex_normals(pair.source.triangulation(), x);
+    let normal = |v| vertex_normal(pair.source.triangulation(), x, v);
     let has_sides = target.normal_sign() == NormalSign::Oriented;
     let places = ball.0.iter().zip(closest).map(|(&(v, weight), hit)| {
         let faces_away = has_sides
             && target
                 .normal(&hit.location)
-                .is_some_and(|n| n.dot(&normals[v]) < 0.0);
+                .is_some_and(|n| n.dot(&normal(v)) < 0.0);
         match faces_away {
             true => x[v],
             false => x[v] + (hit.point - x[v]) * weight,

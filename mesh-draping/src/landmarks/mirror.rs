@@ -1,18 +1,16 @@
 //! Landmarks of the other half of a symmetric source.
 
-use mesh_core::{Aabb, Curve, Landmark, MeshPoint, Point3, Positions, Vector3};
+use mesh_core::{Aabb, Curve, Landmark, MeshPoint, Point3, Vector3};
 use mesh_init::point_pairs;
 use nalgebra::{Matrix3, SymmetricEigen};
 
-use super::Label;
+use super::{curve_counterpart, Label};
 use crate::{Pair, Similarity, Source, Target};
 
 /// A source whose mirror image is farther from it, on the mean and in longest sides of its box, is not symmetric.
 const SYMMETRIC: f64 = 0.01;
 /// Places nearer to each other than this share of the longest side are one.
 const SAME: f64 = 0.01;
-/// Curves whose landmarks are all nearer to some of the other than this are one: a little more than they are apart along it.
-const CURVE_SAME: f64 = 0.02;
 /// Places that spread less across their line than this share of the spread along it, squared, span no plane.
 const SPANNED: f64 = 0.01;
 /// A plane through landmarks is believed if its normal is this near to where the similarity takes the source's.
@@ -136,19 +134,14 @@ pub fn mirror(pair: &Pair) -> Result<Mirrored, MirrorError> {
             ..twin
         }));
     }
-    for (k, (curve, cut)) in Curve::runs(&pair.landmarks).enumerate() {
+    for (k, (curve, _)) in Curve::runs(&pair.landmarks).enumerate() {
         let unnamed = || Some(format!("mirror of {}", Label::of_curve(k, None)));
-        let twin = mirrored_curve(pair, curve, &planes).map(|twin| Curve {
+        let twin = curve_counterpart(pair, curve, &planes).map(|twin| Curve {
             name: twin.name.or_else(unnamed),
             ..twin
         });
-        // What cannot be cut has no way along the other half.
         let twin = twin.and_then(|twin| super::cut(twin, &pair.source).ok());
-        let is_new = |twin: &Vec<Landmark>| {
-            let is_there = |run: &[Landmark]| runs_along(twin, run, rest, CURVE_SAME * side);
-            !is_there(cut) && !Curve::runs(&pair.landmarks).any(|(_, run)| is_there(run))
-        };
-        added.extend(twin.filter(is_new).unwrap_or_default());
+        added.extend(twin.unwrap_or_default());
     }
     Ok(Mirrored {
         added,
@@ -194,35 +187,6 @@ pub fn counterpart(pair: &Pair, landmark: &Landmark, planes: &MirrorPlanes) -> O
     })
 }
 
-/// The curve of the other half: the mirror images of its places, those on the target moved to its surface.
-fn mirrored_curve(pair: &Pair, curve: &Curve, planes: &MirrorPlanes) -> Option<Curve> {
-    let rest = pair.source.rest();
-    let on_source = curve.source.iter().map(|at| {
-        let image = planes.source.mirror(&at.position(rest));
-        place(pair, &image)
-    });
-    let images = curve.target.iter().map(|p| planes.target.mirror(p));
-    let on_target = pair
-        .target
-        .judged()
-        .closest_points(&images.collect::<Vec<_>>());
-    Some(Curve {
-        name: curve.name.as_deref().map(other_side),
-        source: on_source.collect::<Option<_>>()?,
-        target: on_target.iter().map(|hit| hit.point).collect(),
-        weight: curve.weight,
-    })
-}
-
-/// Whether the landmarks of one curve all lie near to some of another, on the source.
-fn runs_along(one: &[Landmark], other: &[Landmark], rest: &Positions, near: f64) -> bool {
-    let there: Vec<Point3> = other.iter().map(|l| l.source.position(rest)).collect();
-    one.iter().all(|l| {
-        let at = l.source.position(rest);
-        there.iter().any(|p| (p - at).norm() < near)
-    })
-}
-
 /// The plane of the target: that of the landmarks on the source's plane where they span one, else the source's plane
 /// under the similarity of all landmarks.
 fn target_plane(pair: &Pair, plane: &Plane, near: f64) -> Plane {
@@ -258,7 +222,7 @@ fn target_plane(pair: &Pair, plane: &Plane, near: f64) -> Plane {
 }
 
 /// A vertex where one is near, else the place in a face.
-fn place(pair: &Pair, at: &Point3) -> Option<MeshPoint> {
+pub(super) fn place(pair: &Pair, at: &Point3) -> Option<MeshPoint> {
     let place = pair.source.closest_place(at)?;
     let vertex = place.main_vertex();
     let rest = pair.source.rest();
@@ -306,7 +270,7 @@ fn symmetry(points: &[Point3], bounds: &Aabb, sum: impl Fn(&[Point3]) -> f64) ->
 }
 
 /// `left ear` for `right ear`, `ear_L` for `ear_R`.
-fn other_side(name: &str) -> String {
+pub(super) fn other_side(name: &str) -> String {
     const PAIRS: [(&str, &str); 3] = [("left", "right"), ("Left", "Right"), ("LEFT", "RIGHT")];
     for (a, b) in PAIRS {
         if name.contains(a) {

@@ -7,7 +7,7 @@
 //! | read and write the two point files of Faceform Wrap | [`read_wrap`], [`write_wrap`] |
 //! | cut a curve into landmarks | [`cut`] |
 //! | find what is probably wrong | [`Pair::findings`](crate::Pair::findings), [`leave_one_out_residuals`] |
-//! | mark the other half of a symmetric source | [`mirror()`]; for one landmark, [`counterpart()`] |
+//! | mark the other half of a symmetric source | [`mirror()`]; for one landmark, [`counterpart()`], for one curve, [`curve_counterpart()`] |
 //! | find how symmetric a shape is | [`source_symmetry()`], [`target_symmetry()`] |
 //! | find where one more would help most | [`suggest()`] |
 
@@ -20,6 +20,7 @@ mod json;
 mod label;
 mod lines;
 mod mirror;
+mod mirror_curve;
 mod suggest;
 mod ways;
 mod wrap;
@@ -34,6 +35,7 @@ pub use mirror::{
     counterpart, mirror, source_symmetry, target_symmetry, MirrorError, MirrorPlanes, Mirrored,
     Plane, Symmetry,
 };
+pub use mirror_curve::{curve_counterpart, curve_image};
 pub use suggest::{suggest, Suggestion};
 pub use wrap::{read_wrap, write_wrap, WrapPoints};
 pub use write::{write, Form, Lost, WrittenLandmarks};
