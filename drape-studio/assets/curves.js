@@ -8,7 +8,9 @@ const SVG = "http://www.w3.org/2000/svg";
 // Of the curve that is drawn, which has no number yet.
 const DRAWN = "#e0457b";
 
-export const curveLabel = ({ name, number }) => name || `curve ${number}`;
+export const curveLabel = ({ name, number }) => name || (number === null ? "curve that waits" : `curve ${number}`);
+// The shape on which a curve has no line yet; none where it has both.
+export const waitsOn = ({ source, target }) => (target.length === 0 ? "target" : source.length === 0 ? "source" : null);
 
 export class Curves {
   constructor(app) {
@@ -23,10 +25,19 @@ export class Curves {
     }
   }
 
+  // Curves that wait for a line on another scan come first.
   toggle() {
     if (this.isOn) return void this.cancel();
+    const waiting = this.app.state.curves.find(waitsOn);
+    if (waiting) return void this.takeUp(waiting);
     this.turn(true);
-    this.app.words.note("Click along the line on the source, then on the target; Enter ends it, Esc gives it up");
+    this.app.words.note("Click along the line on the source, then on the target; Enter ends it, Ctrl Z takes the last place back, Esc gives it up");
+  }
+
+  takeUp(curve) {
+    this.turn(true);
+    this.app.edit("take_up_curve", { landmark: curve.id });
+    this.app.words.note(`Click along “${curveLabel(curve)}” on the ${waitsOn(curve)}; Enter ends it, Esc leaves it for later`);
   }
 
   turn(isOn) {
@@ -88,9 +99,13 @@ export class Curves {
   }
 
   fill(row, curve) {
-    const label = curveLabel(curve);
-    row.number.textContent = String(curve.number);
-    row.number.title = curve.is_closed ? "Closed curve" : "Curve";
+    const [label, missing] = [curveLabel(curve), waitsOn(curve)];
+    row.curve = curve;
+    row.number.textContent = missing ? "·" : String(curve.number);
+    row.number.disabled = !missing;
+    row.number.title = missing ? `Draw it on the ${missing}` : curve.is_closed ? "Closed curve" : "Curve";
+    row.number.setAttribute("aria-label", missing ? `Draw ${label} on the ${missing}` : label);
+    row.name.placeholder = missing ? `draw it on the ${missing}` : "curve";
     if (document.activeElement !== row.name) row.name.value = curve.name;
     row.name.setAttribute("aria-label", `Name of ${label}`);
     row.weight.show(curve.weight, label);
@@ -99,9 +114,10 @@ export class Curves {
 
   addRow(id) {
     const make = (tag, name, text) => Object.assign(document.createElement(tag), { className: name, textContent: text });
-    const row = { item: make("li", "", ""), number: make("span", "number", ""), name: make("input", "", ""), weight: weightField(this.app, id), remove: make("button", "", "×") };
-    Object.assign(row.name, { type: "text", maxLength: 80, placeholder: "curve" });
+    const row = { item: make("li", "", ""), number: make("button", "number", ""), name: make("input", "", ""), weight: weightField(this.app, id), remove: make("button", "", "×") };
+    Object.assign(row.name, { type: "text", maxLength: 80 });
     row.number.style.background = markColour(id);
+    row.number.addEventListener("click", () => this.takeUp(row.curve));
     row.name.addEventListener("change", () => this.app.edit("rename", { landmark: id, name: row.name.value }));
     row.name.addEventListener("keydown", (event) => event.key === "Enter" && row.name.blur());
     row.remove.addEventListener("click", () => this.app.edit("delete", { landmark: id }));
@@ -114,8 +130,10 @@ export class Curves {
   // The lines of a view, as its camera has them.
   draw(view) {
     const { curves = [], drawing } = this.app.state ?? {};
-    const lines = curves.map((curve) => ({ ...curve, colour: markColour(curve.id) }));
-    if (drawing) lines.push({ ...drawing, colour: DRAWN, isDrawn: true });
+    const others = curves.filter((curve) => curve.id !== drawing?.of);
+    const lines = others.map((curve) => ({ ...curve, colour: markColour(curve.id) }));
+    // With the mirror image that it will have.
+    for (const drawn of [drawing?.twin, drawing]) if (drawn) lines.push({ ...drawn, colour: DRAWN, isDrawn: true });
     while (view.lines.children.length > 2 * lines.length) view.lines.lastChild.remove();
     while (view.lines.children.length < 2 * lines.length) view.lines.append(document.createElementNS(SVG, "polyline"));
     const project = lines.length > 0 && view.projection();

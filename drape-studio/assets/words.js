@@ -1,5 +1,6 @@
 // What the page says: titles, advice, complaints.
 
+import { waitsOn } from "./curves.js";
 import { FORMATS } from "./files.js";
 
 const $ = (id) => document.getElementById(id);
@@ -13,14 +14,17 @@ const DISCARDS = {
 const PATIENCE = 9000;
 
 // The next thing to do.
-const advice = ({ source, target, landmarks, run, can }) => {
+const advice = ({ source, target, landmarks, curves, drawing, run, can }) => {
   const waiting = landmarks.filter((l) => !l.source || !l.target);
   const half = waiting[0];
   if (!source && !target) return "Open or drop a source and a target to begin";
   if (!source) return "Now open or drop the source: the mesh to deform";
   if (!target) return "Now open or drop the target: the shape to drape over";
+  if (drawing) return "Click along the line on the source and on the target; Enter ends it, Ctrl Z takes the last place back";
   if (waiting.length > 1) return `Now click ${half.name ? `“${half.name}”` : "the chosen landmark"} on the ${half.source ? "target" : "source"}: ${waiting.length} wait for their places`;
   if (half) return `Now click the same place on the ${half.source ? "target" : "source"}`;
+  const curve = curves.find(waitsOn);
+  if (curve) return `Draw ${curve.name ? `“${curve.name}”` : "the curve that waits"} on the ${waitsOn(curve)}: C begins, Enter ends it`;
   if (can.pause) return "Mark or drag landmarks at any time: they take effect at once";
   if (run.pending) return "Resume: the drape goes on with what you changed";
   if (landmarks.length === 0) return "Click a place on the source, then the same place on the target";

@@ -77,6 +77,118 @@ fn a_session_with_a_curve_and_weights_is_replayed_to_the_bit() {
     wire.state(|s| s["drawing"].is_null());
 }
 
+/// Draws places one after the other.
+fn along(wire: &mut Wire, shape: &str, places: &[[f64; 2]]) {
+    for &at in places {
+        let answer = wire.ask(place(shape, at));
+        assert!(answer["value"].is_array(), "{answer}");
+    }
+}
+
+fn ask(wire: &mut Wire, edit: Value) -> Value {
+    let answer = wire.ask(json!({ "edit": edit }));
+    assert!(answer["error"].is_null(), "{answer}");
+    answer["value"].clone()
+}
+
+/// How many places are drawn on source and target.
+fn drawn(wire: &mut Wire, source: usize, target: usize) -> Value {
+    let n = |s: &Value, shape: &str| s["drawing"][shape].as_array().map(Vec::len);
+    wire.state(|s| n(s, "source") == Some(source) && n(s, "target") == Some(target))
+}
+
+#[test]
+fn a_curve_is_drawn_on_both_sides_and_taken_back_place_by_place() {
+    let folder = Workplace::new();
+    let server = Server::start(&folder.path(""), &SHORT);
+    let mut wire = Wire::own(&server);
+    ask(&mut wire, json!({ "do": "mirror", "axes": [0, 0] }));
+    let line = [[0.1, 0.15], [0.2, 0.12], [0.28, 0.05]];
+    along(&mut wire, "source", &line);
+    along(&mut wire, "target", &line[..2]);
+    // What is drawn is seen on the other half, too, as far as it is.
+    let state = drawn(&mut wire, 3, 2);
+    let twin = &state["drawing"]["twin"];
+    let x = |side: &Value, k: usize| side["target"][k][0].as_f64().expect("a place");
+    assert!(
+        (x(&state["drawing"], 1) + x(twin, 1)).abs() < 0.01,
+        "{twin}"
+    );
+    assert_eq!(twin["source"].as_array().map(Vec::len), Some(3));
+
+    // Undo takes back the last place alone, redo draws it again, and a new place forgets it.
+    let n_landmarks = state["landmarks"].as_array().map(Vec::len);
+    for (what, source, target) in [
+        ("undo", 3, 1),
+        ("undo", 3, 0),
+        ("undo", 2, 0),
+        ("redo", 3, 0),
+    ] {
+        ask(&mut wire, json!({ "do": what }));
+        let state = drawn(&mut wire, source, target);
+        assert_eq!(state["landmarks"].as_array().map(Vec::len), n_landmarks);
+    }
+    along(&mut wire, "target", &line);
+    assert_eq!(drawn(&mut wire, 3, 3)["can"]["redo"], json!(false));
+    ask(&mut wire, json!({ "do": "end_curve" }));
+    let both = wire.state(|s| s["curves"].as_array().map(Vec::len) == Some(2));
+    assert_eq!(both["drawing"], Value::Null);
+    // Both are one edit; one that runs across the middle has no other half.
+    ask(&mut wire, json!({ "do": "undo" }));
+    wire.state(|s| s["curves"] == json!([]));
+    let across = [[-0.2, 0.1], [0.0, 0.1], [0.2, 0.1]];
+    along(&mut wire, "source", &across);
+    along(&mut wire, "target", &across);
+    ask(&mut wire, json!({ "do": "end_curve" }));
+    wire.state(|s| s["curves"].as_array().map(Vec::len) == Some(1));
+}
+
+#[test]
+fn curves_wait_for_their_lines_on_the_next_scan() {
+    let Some(browser) = browser() else { return };
+    let folder = Workplace::new();
+    let other = fs::read(folder.path("target.ply")).unwrap();
+    fs::write(folder.path("other.ply"), [&other[..], b"\n"].concat()).unwrap();
+    let server = Server::start(&folder.path(""), &SHORT);
+    let mut wire = Wire::own(&server);
+    ask(&mut wire, json!({ "do": "mirror", "axes": [0, 0] }));
+    let line = [[0.1, 0.15], [0.2, 0.12], [0.28, 0.05]];
+    along(&mut wire, "source", &line);
+    along(&mut wire, "target", &line);
+    let id = ask(&mut wire, json!({ "do": "end_curve" }))["landmark"].clone();
+    ask(
+        &mut wire,
+        json!({ "do": "rename", "landmark": id, "name": "left lid" }),
+    );
+    ask(&mut wire, json!({ "do": "clear_weights" }));
+
+    let page = Page::open(&browser, &server.url, [1280, 800]);
+    page.wait("studio.views.result.shape && studio.state.curves.length === 2");
+    page.drop_files(
+        super::page::middle(&page, "target"),
+        &[folder.path("other.ply")],
+    );
+    page.wait("studio.state.target.name === 'other.ply' && studio.views.target.shape");
+    page.wait("studio.state.curves.length === 2 && studio.state.curves.every((c) => c.source.length > 1 && c.target.length === 0 && c.number === null)");
+    // A click goes to a landmark that waits; C takes the curve up.
+    page.key("c", 67, 0);
+    page.wait("studio.curves.isOn && studio.state.drawing?.source.length === 3");
+    along(&mut wire, "target", &line[..2]);
+    page.wait("studio.state.drawing.target.length === 2");
+    // In the page, too, undo takes one place back.
+    page.key("z", 90, 2);
+    page.wait("studio.state.drawing.target.length === 1");
+    along(&mut wire, "target", &line[1..]);
+    page.wait("studio.state.drawing.target.length === 3");
+    page.key("Enter", 13, 0);
+    // The other half had its line waiting: it is complete, and none is added.
+    page.wait("!studio.curves.isOn && studio.state.curves.length === 2 && studio.state.curves.every((c) => c.target.length > 8)");
+    let names = page.value("studio.state.curves.map((c) => c.name)");
+    assert_eq!(names[0], json!("left lid"), "{names}");
+    page.press("#undo");
+    page.wait("studio.state.curves.length === 2 && studio.state.curves.every((c) => c.target.length === 0)");
+}
+
 /// Clicks along the curve on both shapes, in the mode that C begins.
 fn draw(page: &Page) {
     let along = [-0.2, -0.05, 0.1, 0.22];

@@ -2,13 +2,11 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::fs;
-use std::io::Write as _;
 
-use flate2::write::ZlibEncoder;
-use flate2::{Compression, Crc};
 use serde_json::json;
 
 use super::browser::{browser, Page};
+use super::glb::{ball, glb, png};
 use super::page::{lose_graphics, middle, pixel, probed};
 use super::server::Server;
 use crate::support::Workplace;
@@ -46,99 +44,20 @@ fn green_scan(place: &Workplace) {
     place.write("green.ply", &text);
 }
 
-/// A picture of one colour as PNG.
-fn png([red, green, blue]: [u8; 3]) -> Vec<u8> {
-    let side = 4_u32;
-    let row = [vec![0], [red, green, blue].repeat(side as usize)].concat();
-    let mut packed = ZlibEncoder::new(Vec::new(), Compression::fast());
-    packed
-        .write_all(&row.repeat(side as usize))
-        .expect("bytes are packed");
-    let packed = packed.finish().expect("bytes are packed");
-    let header = [
-        &side.to_be_bytes()[..],
-        &side.to_be_bytes(),
-        &[8, 2, 0, 0, 0],
-    ]
-    .concat();
-    let mut bytes = b"\x89PNG\r\n\x1a\n".to_vec();
-    for (name, content) in [(b"IHDR", header), (b"IDAT", packed), (b"IEND", Vec::new())] {
-        bytes.extend((content.len() as u32).to_be_bytes());
-        let chunk = [&name[..], &content].concat();
-        let mut sum = Crc::new();
-        sum.update(&chunk);
-        bytes.extend(chunk);
-        bytes.extend(sum.sum().to_be_bytes());
-    }
-    bytes
-}
-
-/// A ball as GLB, with a picture of its base colour inside.
-fn glb(picture: &[u8]) -> Vec<u8> {
-    let soup = mesh_core::shapes::icosphere(3);
-    let numbers = |all: Vec<f64>| {
-        all.iter()
-            .flat_map(|&x| (x as f32).to_le_bytes())
-            .collect::<Vec<u8>>()
-    };
-    let positions = numbers(
-        soup.positions
-            .iter()
-            .flat_map(|p| [p.x, p.y, p.z])
-            .collect(),
-    );
-    let uvs = numbers(
-        soup.positions
-            .iter()
-            .flat_map(|p| [0.5 + 0.4 * p.x, 0.5 + 0.4 * p.y])
-            .collect(),
-    );
-    let corners = soup.faces.iter().flatten();
-    let corners: Vec<u8> = corners.flat_map(|v| v.to_le_bytes()).collect();
-    let mut padded = picture.to_vec();
-    padded.resize(picture.len().next_multiple_of(4), 0);
-    let parts = [positions, uvs, corners, padded];
-    let mut views = Vec::new();
-    let mut at = 0;
-    for part in &parts {
-        views.push(json!({ "buffer": 0, "byteOffset": at, "byteLength": part.len() }));
-        at += part.len();
-    }
-    views[3]["byteLength"] = json!(picture.len());
-    let n = soup.positions.len();
-    let text = json!({
-        "asset": { "version": "2.0" }, "scene": 0, "scenes": [{ "nodes": [0] }], "nodes": [{ "mesh": 0 }],
-        "meshes": [{ "primitives": [{ "attributes": { "POSITION": 0, "TEXCOORD_0": 1 }, "indices": 2, "material": 0 }] }],
-        "materials": [{ "pbrMetallicRoughness": { "baseColorTexture": { "index": 0 } } }],
-        "textures": [{ "source": 0 }], "images": [{ "bufferView": 3, "mimeType": "image/png" }],
-        "accessors": [
-            { "bufferView": 0, "componentType": 5126, "count": n, "type": "VEC3", "min": [-1, -1, -1], "max": [1, 1, 1] },
-            { "bufferView": 1, "componentType": 5126, "count": n, "type": "VEC2" },
-            { "bufferView": 2, "componentType": 5125, "count": 3 * soup.faces.len(), "type": "SCALAR" }],
-        "bufferViews": views, "buffers": [{ "byteLength": at }],
-    });
-    let mut text = text.to_string().into_bytes();
-    text.resize(text.len().next_multiple_of(4), b' ');
-    let content = parts.concat();
-    let mut bytes = b"glTF".to_vec();
-    let total = 28 + text.len() + content.len();
-    for n in [2, total as u32, text.len() as u32] {
-        bytes.extend(n.to_le_bytes());
-    }
-    bytes.extend(b"JSON");
-    bytes.extend(text);
-    bytes.extend((content.len() as u32).to_le_bytes());
-    bytes.extend(b"BIN\0");
-    bytes.extend(content);
-    bytes
-}
-
 #[test]
 fn the_picture_inside_a_glb_is_seen() {
     let Some(browser) = browser() else { return };
     let place = Workplace::new();
-    fs::write(place.path("red.glb"), glb(&png([220, 20, 20]))).unwrap();
-    fs::write(place.path("green.glb"), glb(&png([20, 200, 20]))).unwrap();
+    fs::write(
+        place.path("red.glb"),
+        glb(&ball(), &png(4, |_| [220, 20, 20])),
+    )
+    .unwrap();
+    fs::write(
+        place.path("green.glb"),
+        glb(&ball(), &png(4, |_| [20, 200, 20])),
+    )
+    .unwrap();
     let server = Server::start(&place.path(""), &["red.glb", "green.glb"]);
     let page = Page::open(&browser, &server.url, [1280, 800]);
     page.wait("studio.views.result.shape?.paint && studio.views.target.shape.paint");

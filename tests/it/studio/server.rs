@@ -54,6 +54,11 @@ impl Server {
         format!("/{}/", self.url.split('/').nth(3).expect("a token"))
     }
 
+    /// The number of its process.
+    pub(crate) fn id(&self) -> u32 {
+        self.child.id()
+    }
+
     /// Ends it at once, in the middle of whatever it does.
     pub(crate) fn kill(mut self) {
         self.child.kill().expect("the studio is running");
