@@ -102,9 +102,10 @@ export class Curves {
     const [label, missing] = [curveLabel(curve), waitsOn(curve)];
     row.curve = curve;
     row.number.textContent = missing ? "·" : String(curve.number);
-    row.number.disabled = !missing;
-    row.number.title = missing ? `Draw it on the ${missing}` : curve.is_closed ? "Closed curve" : "Curve";
-    row.number.setAttribute("aria-label", missing ? `Draw ${label} on the ${missing}` : label);
+    row.number.title = missing ? "A curve that waits" : curve.is_closed ? "Closed curve" : "Curve";
+    if (missing) row.remove.before(row.draw);
+    else row.draw.remove();
+    row.draw.setAttribute("aria-label", `Draw ${label} on the ${missing}`);
     row.name.placeholder = missing ? `draw it on the ${missing}` : "curve";
     if (document.activeElement !== row.name) row.name.value = curve.name;
     row.name.setAttribute("aria-label", `Name of ${label}`);
@@ -114,10 +115,10 @@ export class Curves {
 
   addRow(id) {
     const make = (tag, name, text) => Object.assign(document.createElement(tag), { className: name, textContent: text });
-    const row = { item: make("li", "", ""), number: make("button", "number", ""), name: make("input", "", ""), weight: weightField(this.app, id), remove: make("button", "", "×") };
+    const row = { item: make("li", "", ""), number: make("span", "number", ""), name: make("input", "", ""), weight: weightField(this.app, id), draw: make("button", "", "draw"), remove: make("button", "", "×") };
     Object.assign(row.name, { type: "text", maxLength: 80 });
     row.number.style.background = markColour(id);
-    row.number.addEventListener("click", () => this.takeUp(row.curve));
+    row.draw.addEventListener("click", () => this.takeUp(row.curve));
     row.name.addEventListener("change", () => this.app.edit("rename", { landmark: id, name: row.name.value }));
     row.name.addEventListener("keydown", (event) => event.key === "Enter" && row.name.blur());
     row.remove.addEventListener("click", () => this.app.edit("delete", { landmark: id }));

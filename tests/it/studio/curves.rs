@@ -147,8 +147,9 @@ fn a_curve_is_drawn_on_both_sides_and_taken_back_place_by_place() {
 fn curves_wait_for_their_lines_on_the_next_scan() {
     let Some(browser) = browser() else { return };
     let folder = Workplace::new();
-    let other = fs::read(folder.path("target.ply")).unwrap();
-    fs::write(folder.path("other.ply"), [&other[..], b"\n"].concat()).unwrap();
+    let mut other = mesh_core::io::read_soup(folder.path("target.ply")).unwrap();
+    other.positions.iter_mut().for_each(|p| p.y *= 1.01);
+    mesh_core::io::write_soup(folder.path("other.ply"), &other).unwrap();
     let server = Server::start(&folder.path(""), &SHORT);
     let mut wire = Wire::own(&server);
     ask(&mut wire, json!({ "do": "mirror", "axes": [0, 0] }));
@@ -160,7 +161,6 @@ fn curves_wait_for_their_lines_on_the_next_scan() {
         &mut wire,
         json!({ "do": "rename", "landmark": id, "name": "left lid" }),
     );
-    ask(&mut wire, json!({ "do": "clear_weights" }));
 
     let page = Page::open(&browser, &server.url, [1280, 800]);
     page.wait("studio.views.result.shape && studio.state.curves.length === 2");
