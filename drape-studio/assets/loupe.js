@@ -3,10 +3,12 @@
 import { markColour } from "./colours.js";
 import { multiply } from "./maths.js";
 
-// Pixels of the page along its side, how much larger things are in it, and how far above the pointer it stands.
-const SIDE = 168;
+// Its side in heights of the page's letters, how much larger things are in it, and how far above the pointer it stands.
+const SIDE = 12;
 const FACTOR = 4;
-const ABOVE = 24;
+const ABOVE = 1.7;
+
+const letter = () => parseFloat(getComputedStyle(document.documentElement).fontSize);
 
 export class Loupe {
   constructor(app) {
@@ -21,12 +23,14 @@ export class Loupe {
     const { left, top, width } = view.element.getBoundingClientRect();
     [this.view, this.landmark, this.at] = [view, landmark, { x: clientX - left, y: clientY - top }];
     const { x, y } = this.at;
-    const above = y - SIDE - ABOVE;
+    const size = letter();
+    this.side = SIDE * size;
+    const above = y - this.side - ABOVE * size;
     view.element.append(this.canvas);
     this.canvas.hidden = false;
     Object.assign(this.canvas.style, {
-      width: `${SIDE}px`, height: `${SIDE}px`,
-      left: `${Math.max(2, Math.min(width - SIDE - 2, x - SIDE / 2))}px`, top: `${above >= 2 ? above : y + ABOVE}px`,
+      width: `${this.side}px`, height: `${this.side}px`,
+      left: `${Math.max(2, Math.min(width - this.side - 2, x - this.side / 2))}px`, top: `${above >= 2 ? above : y + ABOVE * size}px`,
     });
     this.app.painter.invalidate(view);
   }
@@ -55,7 +59,7 @@ export class Loupe {
   take({ canvas, renderer: { ratio } }) {
     const { view, at } = this;
     const { left, top, width, height } = view.box;
-    const side = Math.round(SIDE * ratio);
+    const side = Math.round(this.side * ratio);
     if (this.canvas.width !== side) [this.canvas.width, this.canvas.height] = [side, side];
     const paper = this.canvas.getContext("2d");
     paper.drawImage(canvas, (left + width / 2) * ratio - side / 2, (top + height / 2) * ratio - side / 2, side, side, 0, 0, side, side);
@@ -64,7 +68,7 @@ export class Loupe {
     const seen = place && view.project(place.point);
     if (!seen) return;
     const there = [seen.x - at.x, seen.y - at.y].map((d) => side / 2 + d * FACTOR * ratio);
-    this.mark(paper, there, 5 * ratio, markColour(landmark.id));
+    this.mark(paper, there, 0.03 * side, markColour(landmark.id));
   }
 
   mark(paper, [x, y], radius, colour) {

@@ -20,7 +20,7 @@ const advice = ({ source, target, landmarks, curves, drawing, run, can }) => {
   if (!source && !target) return "Open or drop a source and a target to begin";
   if (!source) return "Now open or drop the source: the mesh to deform";
   if (!target) return "Now open or drop the target: the shape to drape over";
-  if (drawing) return "Click along the line on the source and on the target; Enter ends it, Ctrl Z takes the last place back";
+  if (drawing) return "Click along the line on both shapes; Enter ends it, Ctrl Z takes a place back";
   if (waiting.length > 1) return `Now click ${half.name ? `“${half.name}”` : "the chosen landmark"} on the ${half.source ? "target" : "source"}: ${waiting.length} wait for their places`;
   if (half) return `Now click the same place on the ${half.source ? "target" : "source"}`;
   const curve = curves.find(waitsOn);
