@@ -2,6 +2,9 @@
 
 import { Ring } from "./ring.js";
 
+// Where in the colours of maps the rigid places are.
+const RIGID = 0.4;
+
 const $ = (id) => document.getElementById(id);
 
 export class Brush {
@@ -61,7 +64,9 @@ export class Brush {
   colour() {
     const { source } = this.app.views;
     if (!this.isOn || !source.shape || this.weights?.length !== source.shape.positions.length / 3) return;
-    source.shape.colour(this.weights, false);
+    // What is not rigid stays as it is.
+    const shown = this.paint.layer === "rigid" ? this.weights.map((rigid) => (rigid > 0 ? RIGID : -1)) : this.weights;
+    source.shape.colour(shown, false);
     this.app.painter.invalidate(source);
   }
 
