@@ -90,7 +90,9 @@ export class Words {
     set(target, "Target", about(state?.target));
     const { shown } = stage;
     const isShown = Boolean(result.shape && shown);
-    set(result, "Result", isShown ? KINDS[shown.kind] || `After ${shown.iteration} iterations` : "");
+    // Nothing but a brush shows another shape than the drape's where nothing has changed.
+    const isBrushed = shown?.kind === 2 && !state?.run.pending;
+    set(result, "Result", !isShown ? "" : isBrushed ? "Brushed" : KINDS[shown.kind] || `After ${shown.iteration} iterations`);
     const badge = BADGES[state?.run.status] ?? "";
     [result.badge.textContent, result.badge.hidden] = [badge, !badge];
     this.invite(source, !state?.source, "The mesh you like", "Drop it here: its quads, UVs and groups survive.", "source");

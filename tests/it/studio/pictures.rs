@@ -2,8 +2,10 @@
 
 use std::path::PathBuf;
 
+use serde_json::json;
+
 use super::browser::{browser, Page};
-use super::page::probed;
+use super::page::{middle, probed};
 use super::server::Server;
 use crate::data::horse_wolf;
 use crate::regions::{head_on_skin, HEAD, SKIN};
@@ -55,6 +57,7 @@ fn every_state_can_be_drawn() {
     page.go(&server.url);
     page.wait("studio.views.result.shape && studio.figures && studio.state.warnings");
     save(&page, "preview");
+    tools(&page, &save);
     page.press("#drape");
     page.wait("studio.shown.iteration > 60 && studio.figures.iteration > 10");
     save(&page, "draping");
@@ -86,7 +89,62 @@ fn compared(page: &Page, save: &dyn Fn(&Page, &str)) {
     page.press("#kept .kept");
     page.wait("studio.strip.shape");
     save(page, "compared");
+    everywhere(page, &|name| save(page, &format!("compared-{name}")));
     page.press("#kept .kept");
+}
+
+/// On small and large pages, light and dark; nothing may be wider than the page.
+fn everywhere(page: &Page, save: &dyn Fn(&str)) {
+    for size in [[1280, 800], [3840, 2160]] {
+        page.size(size, 1.0);
+        for scheme in ["light", "dark"] {
+            page.prefer(scheme);
+            page.wait(&format!(
+                "document.documentElement.dataset.theme === '{scheme}' && innerWidth === {}",
+                size[0]
+            ));
+            save(&format!("{scheme}-{}", size[0]));
+            let is_whole = "['body', 'aside', '#strip', 'footer'].every((s) => { const e = document.querySelector(s); return e.scrollWidth <= e.clientWidth; })";
+            assert_eq!(page.value(is_whole), json!(true), "{scheme} {size:?}");
+        }
+    }
+    page.size([1280, 800], 1.0);
+    page.prefer("light");
+}
+
+/// A curve and its mirror image while they are drawn, what is painted, and the loupe.
+fn tools(page: &Page, save: &dyn Fn(&Page, &str)) {
+    page.press("[data-look=front]");
+    page.value("studio.edit('mirror', { axes: [0, 0] }), true");
+    page.key("c", 67, 0);
+    for side in ["source", "target"] {
+        for (k, dx) in [-16.0, -8.0, -2.0].into_iter().enumerate() {
+            let [x, y] = middle(page, side);
+            page.click([x + dx, y - 10.0 - dx]);
+            page.wait(&format!(
+                "studio.state.drawing?.{side}.length === {}",
+                k + 1
+            ));
+        }
+    }
+    page.value("document.getElementById('toast').hidden = true");
+    everywhere(page, &|name| save(page, &format!("curve-{name}")));
+    page.key("Escape", 27, 0);
+    page.wait("studio.state.drawing === null");
+    for (layer, done) in [("0", "parts.weights"), ("1 rigid", "painted_rigid")] {
+        page.value(&format!("(() => {{ const s = document.getElementById('brush-weight'); s.value = '{layer}'; s.dispatchEvent(new Event('change')); studio.brush.isOn || studio.brush.toggle(); return 1; }})()"));
+        let [x, y] = middle(page, "source");
+        page.drag([x - 12.0, y], [x + 12.0, y + 12.0]);
+        page.wait(&format!("studio.state.{done}"));
+    }
+    everywhere(page, &|name| save(page, &format!("painted-{name}")));
+    page.key("b", 66, 0);
+    for edit in ["clear_weights", "clear_rigid"] {
+        page.value(&format!("studio.edit('{edit}'), true"));
+    }
+    page.value("studio.edit('mirror', { axes: null }), true");
+    page.wait("!studio.state.parts.weights && !studio.state.painted_rigid && !studio.state.mirror");
+    page.value("studio.cameras.home(), true");
 }
 
 /// A part that is pointed out, and what is proposed for inner pieces.
