@@ -189,6 +189,7 @@ class App {
     try {
       const answer = await this.link.ask("edit", { do: "place", shape: view.name, ray, snap: this.snap });
       if (!answer) this.words.note("The click missed: nothing is there");
+      if (answer?.is_mirror_off) this.words.note("Not mirrored: the mirror image is off the target, which is not symmetric there");
       this.choose(answer ? answer.landmark : null);
       this.chooseNext();
     } catch (error) {

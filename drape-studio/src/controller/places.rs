@@ -14,6 +14,18 @@ use crate::session::{numbers, Mark, SourcePlace, MAX_MARKS};
 /// Marks nearer to each other than this, in longest sides, are at one place.
 const SAME_PLACE: f64 = 0.002;
 
+/// A mirror image farther than this from the target's surface, in longest sides, is none: the target is not symmetric there.
+const OFF_SURFACE: f64 = 0.05;
+
+/// What the mirror image of a landmark is.
+enum Twin {
+    /// The landmark is not complete, or nothing is mirrored, or it lies on the mirror.
+    None,
+    /// Its place on the target would be off the surface.
+    OffSurface,
+    Found(Mark),
+}
+
 /// A place on either shape.
 #[derive(Clone, Copy)]
 pub(super) enum Place {
@@ -92,17 +104,20 @@ impl Controller {
         if half.is_none() {
             document.marks.push(Mark::empty(id));
         }
-        let mut twin = None;
+        let mut twin = Twin::None;
         if let Some(mark) = document.marks.iter_mut().find(|m| m.id == id) {
             place.put(mark);
-            twin = self.twin(mark, twin_id).filter(|_| n_marks < MAX_MARKS);
+            twin = self.twin(mark, twin_id);
         }
-        if let Some(twin) = twin {
-            self.add_twin(&mut document.marks, twin);
+        let is_off = matches!(twin, Twin::OffSurface);
+        if let Twin::Found(twin) = twin {
+            if n_marks < MAX_MARKS {
+                self.add_twin(&mut document.marks, twin);
+            }
         }
         self.session.edit(|d| *d = document);
         self.edited();
-        Ok(json!({ "landmark": id }))
+        Ok(json!({ "landmark": id, "is_mirror_off": is_off }))
     }
 
     /// The mark that a place belongs to: the first that waits for one on this shape, else the only one that is half made,
@@ -166,11 +181,20 @@ impl Controller {
         }
     }
 
-    /// The mirror image of a landmark that is complete, unless it lies on the mirror.
-    fn twin(&self, mark: &Mark, id: u32) -> Option<Mark> {
-        let pair = self.displayed.as_ref()?.shapes.pair(Vec::new());
-        let twin = counterpart(&pair, &mark.landmark()?, &self.mirror_planes()?)?;
-        Some(Mark::of(id, &twin))
+    /// The mirror image of a landmark.
+    fn twin(&self, mark: &Mark, id: u32) -> Twin {
+        let found = || {
+            let displayed = self.displayed.as_ref()?;
+            let (planes, landmark) = (self.mirror_planes()?, mark.landmark()?);
+            let twin = counterpart(&displayed.shapes.pair(Vec::new()), &landmark, &planes)?;
+            let off = (planes.target.mirror(&landmark.target) - twin.target).norm();
+            Some((twin, off > OFF_SURFACE * displayed.target.frame.scale))
+        };
+        match found() {
+            None => Twin::None,
+            Some((_, true)) => Twin::OffSurface,
+            Some((twin, false)) => Twin::Found(Mark::of(id, &twin)),
+        }
     }
 
     /// Moves a landmark to a place, if there is one.

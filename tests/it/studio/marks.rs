@@ -85,6 +85,30 @@ fn places_snap_to_vertices_where_that_is_asked_for() {
 }
 
 #[test]
+fn a_mirror_image_that_is_off_the_target_is_no_mark() {
+    let place = Workplace::new();
+    // One half of the scan is flat.
+    let mut soup = mesh_core::io::read_soup(place.path("target.ply")).unwrap();
+    let half = soup.positions.iter_mut().filter(|p| p.x > 10.0);
+    half.for_each(|p| p.z = 0.3 * (p.z + 5.0) - 5.0);
+    mesh_core::io::write_soup(place.path("half.ply"), &soup).unwrap();
+    for (scan, is_off, n) in [("half.ply", true, 1), ("target.ply", false, 2)] {
+        let server = Server::start(&place.path(""), &["source.obj", scan, "--fresh"]);
+        let mut wire = Wire::own(&server);
+        wire.ask(json!({ "edit": { "do": "mirror", "axes": [0, 0] } }));
+        let mut answer = Value::Null;
+        for shape in ["source", "target"] {
+            answer = wire.ask(json!({ "edit": {
+                "do": "place", "shape": shape,
+                "ray": { "origin": [-0.2, 0.05, 3.0], "direction": [0.0, 0.0, -1.0], "spread": 0.001 },
+            } }));
+        }
+        assert_eq!(answer["value"]["is_mirror_off"], json!(is_off), "{answer}");
+        wire.state(|s| s["landmarks"].as_array().map(Vec::len) == Some(n));
+    }
+}
+
+#[test]
 fn a_click_snaps_to_the_sharpest_place_nearby() {
     let Some(browser) = browser() else { return };
     let place = Workplace::new();
