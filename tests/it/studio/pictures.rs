@@ -114,13 +114,12 @@ fn everywhere(page: &Page, save: &dyn Fn(&str)) {
 
 /// A curve and its mirror image while they are drawn, what is painted, and the loupe.
 fn tools(page: &Page, save: &dyn Fn(&Page, &str)) {
-    page.press("[data-look=front]");
-    page.value("studio.edit('mirror', { axes: [0, 0] }), true");
+    page.value("studio.edit('mirror', { axes: [2, 0] }), true");
     page.key("c", 67, 0);
     for side in ["source", "target"] {
-        for (k, dx) in [-16.0, -8.0, -2.0].into_iter().enumerate() {
+        for (k, dx) in [-24.0, -14.0, -4.0].into_iter().enumerate() {
             let [x, y] = middle(page, side);
-            page.click([x + dx, y - 10.0 - dx]);
+            page.click([x + dx, y + 24.0 + dx]);
             page.wait(&format!(
                 "studio.state.drawing?.{side}.length === {}",
                 k + 1
@@ -144,7 +143,6 @@ fn tools(page: &Page, save: &dyn Fn(&Page, &str)) {
     }
     page.value("studio.edit('mirror', { axes: null }), true");
     page.wait("!studio.state.parts.weights && !studio.state.painted_rigid && !studio.state.mirror");
-    page.value("studio.cameras.home(), true");
 }
 
 /// A part that is pointed out, and what is proposed for inner pieces.
