@@ -134,7 +134,8 @@ export class Curves {
     const others = curves.filter((curve) => curve.id !== drawing?.of);
     const lines = others.map((curve) => ({ ...curve, colour: markColour(curve.id) }));
     // With the mirror image that it will have.
-    for (const drawn of [drawing?.twin, drawing]) if (drawn) lines.push({ ...drawn, colour: DRAWN, isDrawn: true });
+    if (drawing?.twin) lines.push({ ...drawing.twin, colour: DRAWN, how: "is-drawn is-twin" });
+    if (drawing) lines.push({ ...drawing, colour: DRAWN, how: "is-drawn" });
     while (view.lines.children.length > 2 * lines.length) view.lines.lastChild.remove();
     while (view.lines.children.length < 2 * lines.length) view.lines.append(document.createElementNS(SVG, "polyline"));
     const project = lines.length > 0 && view.projection();
@@ -143,7 +144,7 @@ export class Curves {
       // A pale line below, so that it is seen on any colour.
       [["casing", ""], ["line", line.colour]].forEach(([name, stroke], layer) => {
         const element = view.lines.children[2 * k + layer];
-        element.setAttribute("class", line.isDrawn ? `${name} is-drawn` : name);
+        element.setAttribute("class", `${name} ${line.how ?? ""}`);
         element.setAttribute("points", points);
         element.style.stroke = stroke;
       });

@@ -114,8 +114,8 @@ impl Controller {
         Ok(first.unwrap_or(place))
     }
 
-    /// Goes on with a curve that waits for its line on another scan.
-    pub(super) fn take_up_curve(&mut self, id: u32) -> Result<()> {
+    /// Goes on with a curve that waits for its line on another scan; there is nothing to answer.
+    pub(super) fn take_up_curve(&mut self, id: u32) -> Result<Value> {
         let lines = self.find(id)?.curve.clone();
         let given = lines.filter(|lines| !lines.is_complete());
         self.drawing = Some(Drawing {
@@ -124,7 +124,7 @@ impl Controller {
             ..Drawing::default()
         });
         self.publish();
-        Ok(())
+        Ok(Value::Null)
     }
 
     /// The curve as it is drawn becomes one of the landmarks, and that of the other half where places are mirrored; its number.

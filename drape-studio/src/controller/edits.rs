@@ -21,13 +21,9 @@ impl Controller {
             self.finish_drag();
         }
         match edit {
-            Edit::Draw { shape, ray } => return self.draw(shape, &ray),
-            Edit::TakeUpCurve { landmark } => {
-                self.take_up_curve(landmark)?;
-                return Ok(Value::Null);
+            Edit::Draw { .. } | Edit::TakeUpCurve { .. } | Edit::EndCurve | Edit::CancelCurve => {
+                return self.make_curve(&edit);
             }
-            Edit::EndCurve => return self.end_curve(),
-            Edit::CancelCurve => return Ok(self.cancel_curve()),
             Edit::Place { shape, ray, snap } => return self.place(shape, &ray, snap),
             Edit::Drag {
                 landmark,
@@ -69,23 +65,42 @@ impl Controller {
                 ensure!(is_kept, "there is no kept result {result}");
                 self.session.edit(|d| d.dismissed.push(result));
             }
-            Edit::Undo => {
-                self.situation().check(Action::Undo)?;
-                match &mut self.drawing {
-                    Some(drawing) => drawing.undo(),
-                    None => self.session.undo(),
-                }
-            }
-            Edit::Redo => {
-                self.situation().check(Action::Redo)?;
-                match &mut self.drawing {
-                    Some(drawing) => drawing.redo(),
-                    None => self.session.redo(),
-                }
-            }
+            Edit::Undo => self.undo()?,
+            Edit::Redo => self.redo()?,
         }
         self.edited();
         Ok(Value::Null)
+    }
+
+    /// Edits of the curve that is drawn.
+    fn make_curve(&mut self, edit: &Edit) -> Result<Value> {
+        match edit {
+            Edit::Draw { shape, ray } => self.draw(*shape, ray),
+            Edit::TakeUpCurve { landmark } => self.take_up_curve(*landmark),
+            Edit::EndCurve => self.end_curve(),
+            // Whoever calls this has such an edit.
+            _ => Ok(self.cancel_curve()),
+        }
+    }
+
+    /// Takes the last edit back, or the last place of the curve that is drawn.
+    fn undo(&mut self) -> Result<()> {
+        self.situation().check(Action::Undo)?;
+        match &mut self.drawing {
+            Some(drawing) => drawing.undo(),
+            None => self.session.undo(),
+        }
+        Ok(())
+    }
+
+    /// Makes it again.
+    fn redo(&mut self) -> Result<()> {
+        self.situation().check(Action::Redo)?;
+        match &mut self.drawing {
+            Some(drawing) => drawing.redo(),
+            None => self.session.redo(),
+        }
+        Ok(())
     }
 
     /// Places landmarks twice from now on, across these axes of source and target.

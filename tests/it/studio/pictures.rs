@@ -27,10 +27,7 @@ fn every_state_can_be_drawn() {
 
     let empty = Server::start(folder.path(), &[]);
     let page = Page::open(&browser, &empty.url, [1280, 800]);
-    page.wait("studio.state");
-    save(&page, "empty");
-    page.press("#help");
-    save(&page, "keys");
+    save_empty(&page, &save);
     empty.kill();
     save_parts(&page, &save);
 
@@ -76,6 +73,14 @@ fn every_state_can_be_drawn() {
     server.kill();
     page.wait("!document.getElementById('offline').hidden");
     save(&page, "offline");
+}
+
+/// Before anything is open, and the list of keys.
+fn save_empty(page: &Page, save: &dyn Fn(&Page, &str)) {
+    page.wait("studio.state");
+    save(page, "empty");
+    page.press("#help");
+    save(page, "keys");
 }
 
 /// A kept result beside the run that went on from it.

@@ -48,7 +48,7 @@ fn a_scan_with_a_large_picture_opens() {
     let place = Workplace::new();
     let painted = scan();
     assert!(painted.soup.faces.len() > 1_400_000);
-    let color = |[x, y]: [u32; 2]| [(x >> 4) as u8, (y >> 4) as u8, (x * y >> 10) as u8];
+    let color = |[x, y]: [u32; 2]| [(x >> 4) as u8, (y >> 4) as u8, ((x * y) >> 10) as u8];
     fs::write(place.path("scan.glb"), glb(&painted, &png(4096, color))).unwrap();
     drop(painted);
 
