@@ -224,6 +224,7 @@ export class Panels {
       ["angles", `${f.angle_deviation.toFixed(1)}°`, "Mean change of the corner angles"],
       ["folds", f.folds, "Edges folded over"],
       ["skinny", f.skinny, "Triangles of quality below 0.1"],
+      ["crossings", f.crossings, "Pairs of triangles that run through each other and did not in the source"],
       ["landmarks", `${(100 * f.landmark_rms).toFixed(2)} %`, "Root mean square of what the landmarks are off"],
     ] : [];
     $("figures").replaceChildren(...entries.map(([name, value, title]) => {

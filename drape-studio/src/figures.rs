@@ -8,8 +8,8 @@ use mesh_core::measure::{corner_angle, triangle_normal};
 use mesh_core::{Landmark, Positions};
 use mesh_metrics::{
     dirichlet_unit_area, face_stretch, folded_edges, hausdorff_sampled, mean_angle_deviation,
-    opposed_triangles, q_transfer, skinny_triangles, vertex_distances, EvaluationConfig,
-    SurfaceDistances, HAUSDORFF_WEIGHT, PAPER_TAU,
+    new_crossings, opposed_triangles, q_transfer, skinny_triangles, vertex_distances,
+    EvaluationConfig, SurfaceDistances, HAUSDORFF_WEIGHT, PAPER_TAU,
 };
 use serde::Deserialize;
 use serde_json::json;
@@ -76,6 +76,7 @@ fn tell(broadcast: &Broadcast, job: &FiguresJob) {
         "angle_deviation": mean_angle_deviation(triangulation, rest, x),
         "folds": folded_edges(triangulation, rest, x).len(),
         "skinny": skinny_triangles(triangulation, x).len(),
+        "crossings": new_crossings(triangulation, rest, x).len(),
         "landmark_rms": (squares / job.landmarks.len().max(1) as f64).sqrt(),
     });
     if let Some(iteration) = job.iteration {

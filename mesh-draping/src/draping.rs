@@ -379,9 +379,8 @@ impl Draping {
         };
         let explanation = {
             let pair = &self.pair;
-            let distances = &report.vertex_distances;
             self.stages.time("explanation", || {
-                crate::explain::explain(pair, &draped, distances, &counted)
+                crate::explain::explain(pair, &draped, &report, &counted)
             })
         };
         Ok(Outcome {

@@ -54,7 +54,7 @@ mod transfer;
 pub use background::{Background, BackgroundStatus};
 pub use draping::{adjusted, Draping};
 pub use error::{Error, MeshProblem};
-pub use explain::{Advice, Explanation, PlaceKind, RegionDistances, WorstPlace};
+pub use explain::{Advice, CrossingPlace, Explanation, PlaceKind, RegionDistances, WorstPlace};
 pub use history::{Curve, History};
 pub use initial::{initial_deformation, InitialMethod, InitialShape};
 pub use note::{Note, Shape};

@@ -52,7 +52,7 @@ impl Outcome {
             target_exceeds: false,
         };
         Ok(Self {
-            explanation: explain(&pair, &draped, &report.vertex_distances, &counted),
+            explanation: explain(&pair, &draped, &report, &counted),
             pair,
             preset,
             initial,

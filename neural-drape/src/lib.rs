@@ -7,7 +7,7 @@
 //! | keep parts of the source free or rigid | [`Regions`], [`Drape::set_regions`] |
 //! | choose how | [`DrapeConfig`] and its presets |
 //! | move the vertices by a map of your own | [`Parametrization`], [`Drape::with_parametrization`] |
-//! | take out folds and skinny triangles at the end | [`Drape::finish`], [`repair`] |
+//! | take out folds, skinny triangles and crossings at the end | [`Drape::finish`], [`repair`] |
 //! | go on with other landmarks | [`Drape::set_landmarks`], [`Drape::displace`], [`Drape::extend`] |
 //! | keep a drape in progress | [`Drape::state`], [`Drape::restore`] |
 //! | do to other points what was done to the source | [`Warp::new`], [`Warp::apply`] |
@@ -67,6 +67,7 @@ mod setting;
 mod state;
 mod studies;
 mod trial;
+mod untangle;
 mod vertices;
 mod warp;
 

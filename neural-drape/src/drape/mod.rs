@@ -232,12 +232,12 @@ impl Drape {
         self.landmarks.iter().flat_map(|l| l.source.vertices)
     }
 
-    /// The result: the positions, without the new folds and new skinny triangles that can be taken out if the settings
+    /// The result: the positions, without the new folds, skinny triangles and crossings that can be taken out if the settings
     /// ask for it ([`crate::repair`]). The drape stays as it is and can go on.
     pub fn finish(&self) -> Repair {
         let positions = self.positions();
         if self.config.repair {
-            let held: Vec<VertexId> = self.marked().collect();
+            let held: Vec<VertexId> = self.marked().chain(self.guidance.rigid()).collect();
             crate::repair(&self.triangulation, &self.rest, &positions, &held)
         } else {
             let defects = crate::repair::defects(&self.triangulation, &self.rest, &positions);

@@ -1,4 +1,4 @@
-//! The last stage: no new fold, no new skinny triangle.
+//! The last stage: no new fold, no new skinny triangle, no new crossing.
 
 mod judge;
 
@@ -7,7 +7,9 @@ use std::sync::Arc;
 use mesh_core::{Point3, Positions, Triangulation, UnitFrame, Vector3, VertexData, VertexId};
 use mesh_loss::{FoldBarrier, LocalShape};
 
-use judge::{Broken, Judge, Surroundings};
+pub(crate) use judge::{Broken, Judge, Reach, Surroundings};
+
+use crate::untangle::{crossings, untangle};
 
 /// A patch grows up to this many rings around what is broken.
 const MAX_RINGS: usize = 8;
@@ -46,18 +48,23 @@ pub struct Defects {
     pub folds: Vec<[VertexId; 2]>,
     /// Rows of the triangles with Q_f < 0.1.
     pub skinny: Vec<usize>,
+    /// Pairs of triangles that run through each other: their rows, the lower first, in order. Touching does not count.
+    pub crossings: Vec<[usize; 2]>,
 }
 
 impl Defects {
     /// Whether nothing is broken.
     pub fn is_empty(&self) -> bool {
-        self.folds.is_empty() && self.skinny.is_empty()
+        self.folds.is_empty() && self.skinny.is_empty() && self.crossings.is_empty()
     }
 }
 
 /// Relaxes small patches around new folds and new skinny triangles towards the shape they had at rest, turned and
 /// scaled, with their surroundings held ([`LocalShape::relax`]); a patch grows until nothing in it is broken. Before,
 /// edges that are only just folded are bent back along the gradient of [`FoldBarrier`].
+///
+/// Then crossings are taken out: what crosses is pushed apart to the sides where it was at rest, its surroundings relax,
+/// and every vertex goes back towards where it was as far as nothing crosses. What crosses at rest already may do so.
 ///
 /// A patch that does not get better by a small motion stays as it was. All else stays, to the bit.
 ///
@@ -68,16 +75,39 @@ pub fn repair(
     x: &Positions,
     held: &[VertexId],
 ) -> Repair {
+    let mut held = held.to_vec();
+    held.sort_unstable();
     let judge = Judge::new(triangulation, rest);
+    let unfolded = unfolded(&judge, triangulation, x, &held);
+    let untangled = untangle(&judge, &unfolded, &held);
+    Repair {
+        before: Defects {
+            crossings: crossings(triangulation, rest, x),
+            ..judge.defects(&judge.broken(x))
+        },
+        left: Defects {
+            crossings: untangled.left,
+            ..judge.defects(&untangled.broken)
+        },
+        positions: untangled.positions,
+    }
+}
+
+/// Positions without the folds and skinny triangles that could be taken out, and what of them is left.
+fn unfolded(
+    judge: &Judge<'_>,
+    triangulation: &Arc<Triangulation>,
+    x: &Positions,
+    held: &[VertexId],
+) -> (Positions, Broken) {
     let mut broken = judge.broken(x);
-    let before = judge.defects(&broken);
     let mut positions = x.clone();
     let vertices = judge.vertices(&broken);
     if !vertices.is_empty() {
         let mender = Mender {
-            judge: &judge,
-            surroundings: Surroundings::new(&judge),
-            shape: LocalShape::new(triangulation, rest),
+            judge,
+            surroundings: Surroundings::new(judge),
+            shape: LocalShape::new(triangulation, judge.rest()),
             barriers: judge.barriers(UNBENT_COSINE),
             triangulation,
             held,
@@ -90,11 +120,7 @@ pub fn repair(
             }
         }
     }
-    Repair {
-        left: judge.defects(&broken),
-        before,
-        positions,
-    }
+    (positions, broken)
 }
 
 /// One of the ways to mend: it changes the positions of the free vertices, turn by turn.
@@ -121,8 +147,8 @@ impl Mender<'_> {
     ) -> Option<(Positions, Broken)> {
         let vertices = self.judge.vertices(broken);
         let free = |rings: usize| {
-            let mut free = self.grown(patch, rings);
-            free.retain(|v| !self.held.contains(v));
+            let mut free = grown(self.triangulation, patch, rings);
+            free.retain(|v| self.held.binary_search(v).is_err());
             free
         };
         // The first of the shapes that `change` goes through in which the patch is mended by a small motion.
@@ -189,21 +215,25 @@ impl Mender<'_> {
             }
         }
     }
+}
 
-    /// The vertices within `rings` edges of `patch`, in order.
-    fn grown(&self, patch: &[VertexId], rings: usize) -> Vec<VertexId> {
-        let mut grown = patch.to_vec();
-        for _ in 0..rings {
-            let around = grown
-                .iter()
-                .flat_map(|&v| self.triangulation.vertex_neighbours(v));
-            let around: Vec<VertexId> = around.copied().collect();
-            grown.extend(around);
-            grown.sort_unstable();
-            grown.dedup();
-        }
-        grown
+/// The vertices within `rings` edges of `patch`, in order.
+pub(crate) fn grown(
+    triangulation: &Triangulation,
+    patch: &[VertexId],
+    rings: usize,
+) -> Vec<VertexId> {
+    let mut is_in = VertexData::new(triangulation.n_vertices(), false);
+    patch.iter().for_each(|&v| is_in[v] = true);
+    let mut edge = patch.to_vec();
+    for _ in 0..rings {
+        let around = edge
+            .iter()
+            .flat_map(|&v| triangulation.vertex_neighbours(v));
+        let around = around.copied().filter(|&w| !std::mem::replace(&mut is_in[w], true));
+        edge = around.collect();
     }
+    triangulation.vertices().filter(|&v| is_in[v]).collect()
 }
 
 /// What is broken at `x` that was not at rest.
@@ -213,7 +243,10 @@ pub(crate) fn defects(
     x: &Positions,
 ) -> Defects {
     let judge = Judge::new(triangulation, rest);
-    judge.defects(&judge.broken(x))
+    Defects {
+        crossings: crossings(triangulation, rest, x),
+        ..judge.defects(&judge.broken(x))
+    }
 }
 
 /// Nothing in the patch is broken any more, and nothing else is that was not.

@@ -1,0 +1,277 @@
+//! The last stage, second part: no surface runs through another that did not at rest.
+
+mod crossing;
+mod push;
+
+use mesh_core::{Aabb, Positions, Triangulation, UnionFind, UnitFrame, VertexId};
+use mesh_loss::LocalShape;
+
+use crate::repair::{grown, Broken, Judge, Reach, Surroundings};
+use crossing::{triangles_at, Detector};
+use push::push_apart;
+
+/// A patch grows to so many rings around what crosses, one size after the other.
+const RINGS: [usize; 6] = [1, 2, 4, 8, 14, 22];
+/// So often what crosses is pushed apart and the patch relaxed, for each size.
+const TURNS: usize = 30;
+/// So often a patch that came free is moved back towards where it was.
+const RETURNS: usize = 10;
+/// So often vertices that get in the way stay behind, before nothing moves back.
+const STAYS: usize = 12;
+/// What is farther from a patch than this share of the longest side cannot get in its way; no vertex is moved farther.
+const MAX_MOTION: f64 = 0.08;
+
+/// A shape without the crossings that could be taken out of it.
+pub(crate) struct Untangled {
+    pub(crate) positions: Positions,
+    /// What is folded or skinny there.
+    pub(crate) broken: Broken,
+    /// The triangles that still cross and did not at rest: pairs of rows, the lower first, in order.
+    pub(crate) left: Vec<[usize; 2]>,
+}
+
+/// The triangles that cross at `x` and did not at rest: pairs of rows, the lower first, in order.
+pub(crate) fn crossings(
+    triangulation: &Triangulation,
+    rest: &Positions,
+    x: &Positions,
+) -> Vec<[usize; 2]> {
+    let pairs = Detector::new(triangulation, rest, x).all_crossings(x);
+    in_full(&pairs)
+}
+
+fn in_full(pairs: &[[u32; 2]]) -> Vec<[usize; 2]> {
+    pairs.iter().map(|pair| pair.map(|t| t as usize)).collect()
+}
+
+/// Takes crossings out of a shape, patch by patch: what crosses is pushed apart to the sides where it was at rest, while its
+/// surroundings relax towards the shape that they had at rest, until nothing crosses; then every vertex goes back towards
+/// where it was as far as nothing crosses or folds. So a patch moves no more than it must.
+///
+/// A patch that does not come free stays as it was. The vertices of `held`, in order, stay where they are.
+pub(crate) fn untangle(
+    judge: &Judge<'_>,
+    (x, broken): (Positions, Broken),
+    held: &[VertexId],
+) -> Untangled {
+    let (triangulation, rest) = (judge.triangulation(), judge.rest());
+    let mut detector = Detector::new(triangulation, rest, &x);
+    let mut left = detector.all_crossings(&x);
+    let (mut positions, mut broken) = (x, broken);
+    if !left.is_empty() {
+        let untangler = Untangler {
+            triangulation,
+            rest,
+            held,
+            detector,
+            shape: LocalShape::new(triangulation, rest),
+            surroundings: Surroundings::new(judge),
+            judge,
+            reach: MAX_MOTION * UnitFrame::principal(positions.as_slice()).scale,
+        };
+        for patch in patches(triangulation, &left) {
+            if let Some(free) = untangler.freed(&positions, &patch, &left, &broken) {
+                left.retain(|pair| !is_at(triangulation, &patch, pair));
+                (positions, broken) = free;
+            }
+        }
+    }
+    Untangled {
+        positions,
+        broken,
+        left: in_full(&left),
+    }
+}
+
+/// Vertices of the triangles that cross: those of each pair, and what touches, are one patch. Each ascending.
+fn patches(triangulation: &Triangulation, pairs: &[[u32; 2]]) -> Vec<Vec<VertexId>> {
+    let corners = |row: u32| triangulation.triangles()[row as usize];
+    let mut sets = UnionFind::new(triangulation.n_vertices());
+    let mut is_in = vec![false; triangulation.n_vertices()];
+    for &[one, two] in pairs {
+        let (s, t) = (corners(one), corners(two));
+        for v in s.into_iter().chain(t) {
+            sets.union(s[0].index(), v.index());
+            is_in[v.index()] = true;
+        }
+    }
+    for [a, b] in triangulation.edges().iter().map(|e| e.map(VertexId::index)) {
+        if is_in[a] && is_in[b] {
+            sets.union(a, b);
+        }
+    }
+    let rows = sets.sets(|row| is_in[row]);
+    let ids = |rows: Vec<usize>| rows.into_iter().map(VertexId::new).collect();
+    rows.into_iter().map(ids).collect()
+}
+
+/// Whether a pair of triangles is one of a patch.
+fn is_at(triangulation: &Triangulation, patch: &[VertexId], pair: &[u32; 2]) -> bool {
+    let v = triangulation.triangles()[pair[0] as usize][0];
+    patch.binary_search(&v).is_ok()
+}
+
+/// Takes patches apart, one at a time.
+struct Untangler<'a> {
+    triangulation: &'a Triangulation,
+    rest: &'a Positions,
+    held: &'a [VertexId],
+    /// Of all triangles.
+    detector: Detector<'a>,
+    shape: LocalShape,
+    judge: &'a Judge<'a>,
+    surroundings: Surroundings<'a>,
+    reach: f64,
+}
+
+impl Untangler<'_> {
+    /// The positions with a patch that does not cross any more, and what is folded or skinny then; none where it does not
+    /// come free. `known` are the pairs that cross at `x`.
+    fn freed(
+        &self,
+        x: &Positions,
+        patch: &[VertexId],
+        known: &[[u32; 2]],
+        broken: &Broken,
+    ) -> Option<(Positions, Broken)> {
+        let mut moved = x.clone();
+        RINGS.iter().find_map(|&rings| {
+            let mut case = Case::new(self, x, patch, known, broken, rings);
+            if !case.pull_apart(&mut moved) {
+                return None;
+            }
+            case.give_back(&mut moved);
+            let is_near = |v: &VertexId| (moved[*v] - x[*v]).norm() <= self.reach;
+            case.free.iter().all(is_near).then(|| {
+                let broken = self.judge.broken_after(broken, &moved, &case.near);
+                (moved.clone(), broken)
+            })
+        })
+    }
+}
+
+/// A patch with its surroundings up to a number of rings.
+struct Case<'a, 'u> {
+    all: &'u Untangler<'a>,
+    /// Where everything was.
+    x: &'u Positions,
+    /// What may move, ascending.
+    free: Vec<VertexId>,
+    /// The triangles that it moves.
+    rows: Vec<u32>,
+    detector: Detector<'a>,
+    near: Reach,
+    /// What crosses elsewhere.
+    others: Vec<[u32; 2]>,
+    broken: &'u Broken,
+    /// Vertices of what is folded or skinny already.
+    is_broken: Vec<VertexId>,
+}
+
+impl<'a, 'u> Case<'a, 'u> {
+    fn new(
+        all: &'u Untangler<'a>,
+        x: &'u Positions,
+        patch: &[VertexId],
+        known: &[[u32; 2]],
+        broken: &'u Broken,
+        rings: usize,
+    ) -> Self {
+        let mut free = grown(all.triangulation, patch, rings);
+        free.retain(|v| all.held.binary_search(v).is_err());
+        let bounds = around(&free, x, all.reach);
+        let others = known.iter().copied();
+        let others = others.filter(|pair| !is_at(all.triangulation, patch, pair));
+        Self {
+            rows: triangles_at(all.triangulation, &free),
+            detector: all.detector.within(&bounds, x),
+            near: all.surroundings.reach(&free),
+            others: others.collect(),
+            is_broken: all.judge.vertices(broken),
+            all,
+            x,
+            free,
+            broken,
+        }
+    }
+
+    /// What crosses at `y` and is no matter of another patch.
+    fn crossings(&mut self, y: &Positions) -> Vec<[u32; 2]> {
+        let mut pairs = self.detector.crossings(y, &self.rows);
+        pairs.retain(|pair| self.others.binary_search(pair).is_err());
+        pairs
+    }
+
+    /// Vertices of what is folded or skinny at `y` and was not.
+    fn newly_broken(&self, y: &Positions) -> Vec<VertexId> {
+        let judge = self.all.judge;
+        let broken = judge.broken_after(self.broken, y, &self.near);
+        let mut vertices = judge.vertices(&broken);
+        vertices.retain(|v| self.is_broken.binary_search(v).is_err());
+        vertices
+    }
+
+    /// Pushes and relaxes until nothing crosses and nothing is newly folded; whether it comes to that.
+    fn pull_apart(&mut self, y: &mut Positions) -> bool {
+        for _ in 0..TURNS {
+            let pairs = self.crossings(y);
+            if pairs.is_empty() && self.newly_broken(y).is_empty() {
+                return true;
+            }
+            push_apart(self.all.triangulation, self.all.rest, &pairs, y, &self.free);
+            self.all.shape.relax(y, &self.free);
+        }
+        false
+    }
+
+    /// Moves every vertex back towards where it was, as far as nothing crosses or folds.
+    fn give_back(&mut self, y: &mut Positions) {
+        let mut shares = vec![1.0; self.free.len()];
+        for _ in 0..RETURNS {
+            let mut moved = y.clone();
+            for (&v, share) in self.free.iter().zip(&shares) {
+                moved[v] = y[v] + (self.x[v] - y[v]) * *share;
+            }
+            if self.settle(y, &mut moved, &mut shares) {
+                *y = moved;
+            } else {
+                shares.iter_mut().for_each(|share| *share *= 0.5);
+            }
+        }
+    }
+
+    /// Takes back the moves of vertices that get in the way, until none does; they try half of it next time. Whether it
+    /// comes to that.
+    fn settle(&mut self, y: &Positions, moved: &mut Positions, shares: &mut [f64]) -> bool {
+        for _ in 0..STAYS {
+            let crossing = self.crossings(moved);
+            let triangles = self.all.triangulation.triangles();
+            let corners = crossing.as_flattened().iter();
+            let mut stay: Vec<VertexId> = corners.flat_map(|&t| triangles[t as usize]).collect();
+            stay.extend(self.newly_broken(moved));
+            if stay.is_empty() {
+                return true;
+            }
+            stay.sort_unstable();
+            stay.dedup();
+            for v in stay {
+                if let Ok(row) = self.free.binary_search(&v) {
+                    if moved[v] != y[v] {
+                        moved[v] = y[v];
+                        shares[row] *= 0.5;
+                    }
+                }
+            }
+        }
+        false
+    }
+}
+
+/// The box around some vertices, larger by `margin` on every side.
+fn around(vertices: &[VertexId], x: &Positions, margin: f64) -> Aabb {
+    let points: Vec<_> = vertices.iter().map(|&v| x[v]).collect();
+    let mut bounds = Aabb::of(&points);
+    bounds.min.iter_mut().for_each(|c| *c -= margin);
+    bounds.max.iter_mut().for_each(|c| *c += margin);
+    bounds
+}
