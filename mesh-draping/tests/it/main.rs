@@ -1,6 +1,7 @@
 //! The method as a user of the library has it.
 
 mod background;
+mod contact;
 mod interactive;
 mod parts;
 mod run;

@@ -8,7 +8,7 @@ use mesh_core::{
     TriangleSoup, Triangulation, UnitFrame, Vector3, VertexData, VertexId,
 };
 use mesh_loss::{
-    AreaKl, Chamfer, Conformal, CornerAngle, Drift, Flip, FoldBarrier, LandmarkDistance,
+    AreaKl, Chamfer, Conformal, Contact, ContactInput, CornerAngle, Drift, Flip, FoldBarrier, LandmarkDistance,
     LocalShape, Loss, Matches, NormalAgreement, SamplingConfig, SurfaceMatcher, TriangleQuality,
     WorstDistance,
 };
@@ -144,6 +144,16 @@ proptest! {
         for term in terms {
             assert_gradient(term, &s.moved, &mut s.rng)?;
         }
+    }
+
+    #[test]
+    fn contact(shape in 0..5usize, seed in 0..10_000u64) {
+        let mut s = setup(shape, seed, 0.2);
+        // Nothing was near at rest, and much is now.
+        let rest = s.rest.map(|p| p * 100.0);
+        let input = ContactInput { triangulation: &s.triangulation, rest: &rest, x: &s.moved };
+        let contact = Contact::near(input, 0.9, 1.2);
+        assert_gradient(&contact, &s.moved, &mut s.rng)?;
     }
 
     #[test]

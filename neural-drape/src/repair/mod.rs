@@ -79,7 +79,7 @@ pub fn repair(
     held.sort_unstable();
     let judge = Judge::new(triangulation, rest);
     let unfolded = unfolded(&judge, triangulation, x, &held);
-    let untangled = untangle(&judge, &unfolded, &held);
+    let untangled = untangle(&judge, unfolded, &held);
     Repair {
         before: Defects {
             crossings: crossings(triangulation, rest, x),

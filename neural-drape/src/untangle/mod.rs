@@ -15,7 +15,7 @@ const RINGS: [usize; 6] = [1, 2, 4, 8, 14, 22];
 /// So often what crosses is pushed apart and the patch relaxed, for each size.
 const TURNS: usize = 30;
 /// So often a patch that came free is moved back towards where it was.
-const RETURNS: usize = 10;
+const RETURNS: usize = 40;
 /// So often vertices that get in the way stay behind, before nothing moves back.
 const STAYS: usize = 12;
 /// What is farther from a patch than this share of the longest side cannot get in its way; no vertex is moved farther.
@@ -226,13 +226,19 @@ impl<'a, 'u> Case<'a, 'u> {
 
     /// Moves every vertex back towards where it was, as far as nothing crosses or folds.
     fn give_back(&mut self, y: &mut Positions) {
-        let mut shares = vec![1.0; self.free.len()];
+        let mut shares = vec![0.15; self.free.len()];
         for _ in 0..RETURNS {
             let mut moved = y.clone();
             for (&v, share) in self.free.iter().zip(&shares) {
                 moved[v] = y[v] + (self.x[v] - y[v]) * *share;
             }
             if self.settle(y, &mut moved, &mut shares) {
+                for ((&v, share), row) in self.free.iter().zip(&mut shares).zip(0..) {
+                    let _: usize = row;
+                    if moved[v] != y[v] {
+                        *share = (*share * 2.0).min(0.15);
+                    }
+                }
                 *y = moved;
             } else {
                 shares.iter_mut().for_each(|share| *share *= 0.5);
