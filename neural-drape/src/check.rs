@@ -26,6 +26,8 @@ impl DrapeConfig {
             Setting::share("skinny_threshold", self.skinny_threshold),
             Setting::cosine("fold_limit", self.fold_limit),
         ];
+        let contact = self.contact.iter();
+        settings.extend(contact.map(|contact| Setting::share("contact.from", contact.from)));
         settings.extend(self.learning_rate.settings());
         settings.extend(self.sampling.settings());
         let stages = self.stages.iter().enumerate();

@@ -54,6 +54,7 @@ mod config;
 mod coverage;
 mod drape;
 mod error;
+mod guard;
 mod input;
 pub mod network;
 mod objective;
@@ -76,6 +77,7 @@ pub use config::{
 };
 pub use drape::{Drape, StepReport};
 pub use error::DrapeError;
+pub use guard::ContactConfig;
 pub use input::DrapeInput;
 pub use objective::TermReport;
 pub use parametrization::Parametrization;

@@ -5,7 +5,7 @@
 
 use crate::network::NetworkConfig;
 use crate::{
-    AngleReference, Descent, DrapeConfig, DrapeError, LearningRate, OverlapMode,
+    AngleReference, ContactConfig, Descent, DrapeConfig, DrapeError, LearningRate, OverlapMode,
     ParametrizationConfig, Sampling, Stage, VerticesConfig, Weights,
 };
 
@@ -71,6 +71,7 @@ impl DrapeConfig {
             skinny_threshold: 0.2,
             fold_limit: 0.3,
             repair: true,
+            contact: Some(ContactConfig::standard()),
             stages: standard_stages(330, 670),
         }
     }
@@ -108,6 +109,8 @@ impl DrapeConfig {
                 double_every: None,
                 ..standard.sampling
             },
+            // Vertices that are held back are no longer where the network alone has them.
+            contact: None,
             ..standard
         }
     }
@@ -161,6 +164,7 @@ impl DrapeConfig {
             skinny_threshold: 0.1,
             fold_limit: 0.3,
             repair: false,
+            contact: None,
             stages: vec![constant(1000, first), constant(500, second)],
         }
     }

@@ -1,6 +1,6 @@
 //! Settings for a shape that is nearly draped.
 
-use crate::{DrapeConfig, LearningRate, ParametrizationConfig, Stage};
+use crate::{ContactConfig, DrapeConfig, LearningRate, ParametrizationConfig, Stage};
 
 /// The largest step of the refinement beside that of the run.
 const STEP: f64 = 0.3;
@@ -17,6 +17,9 @@ impl DrapeConfig {
                 from: to,
                 to,
             }];
+        }
+        if config.contact.is_some() {
+            config.contact = Some(ContactConfig { from: 0.0 });
         }
         config.learning_rate = LearningRate {
             peak: STEP * self.learning_rate.peak,

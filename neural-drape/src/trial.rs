@@ -28,6 +28,7 @@ impl DrapeConfig {
                 decay: 0.3,
             },
             repair: false,
+            contact: None,
             ..self.clone()
         };
         config.sampling.n_samples = N_SAMPLES;

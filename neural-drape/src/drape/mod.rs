@@ -14,6 +14,7 @@ use mesh_loss::{Beyond, Matches, Overlap, SurfaceMatcher};
 use crate::config::{Descent, DrapeConfig};
 use crate::coverage::{mark_uncovered, Pairing, Target, FAR_BEYOND, N_BEYOND};
 use crate::input::check_length;
+use crate::guard::{ground, Guard, PERIOD};
 use crate::network::NetworkMap;
 use crate::objective::{self, DistanceLoss, StructuralLoss, TermReport};
 use crate::regions::{Follow, Guidance, Regions};
@@ -54,6 +55,7 @@ pub struct Drape {
     initial: Positions,
     is_uncovered: VertexData<bool>,
     guidance: Guidance,
+    guard: Option<Guard>,
     iteration: usize,
     n_iterations: usize,
     stage_starts: Vec<usize>,
@@ -126,6 +128,7 @@ impl Drape {
             pairing,
             is_uncovered,
             guidance,
+            guard: None,
             frame,
             parametrization,
             landmarks: Vec::new(),
@@ -159,6 +162,7 @@ impl Drape {
             .config
             .learning_rate
             .at(self.iteration, self.n_iterations);
+        let before = self.guarded();
         let progress = self.iteration as f64 / self.n_iterations as f64;
         self.profile.time("preconditioner", || {
             self.parametrization.set_progress(progress)
@@ -187,6 +191,7 @@ impl Drape {
 
         self.iteration += 1;
         self.settle()?;
+        self.hold_back(before.as_ref());
         Ok(Some(StepReport {
             iteration: self.iteration - 1,
             n_iterations: self.n_iterations,
@@ -200,6 +205,53 @@ impl Drape {
         self.parametrization
             .positions()
             .map(|p| self.frame.from_unit(p))
+    }
+
+    /// Once the coarse fit stands, where the vertices are before a step that must not drive the surface through itself;
+    /// what crosses when this begins is taken out first.
+    fn guarded(&mut self) -> Option<Positions> {
+        let contact = self.config.contact?;
+        let first = (contact.from * self.n_iterations as f64) as usize;
+        if self.iteration < first {
+            return None;
+        }
+        if self.guard.is_none() {
+            self.untangle();
+        }
+        let x = self.parametrization.positions();
+        if self.guard.is_none() || (self.iteration - first).is_multiple_of(PERIOD) {
+            let ground = ground(&self.triangulation, &self.rest);
+            let guard = self.profile.time("contact", || Guard::new(ground, x));
+            self.guard = Some(guard);
+        }
+        Some(x.clone())
+    }
+
+    /// Takes out what crosses now.
+    fn untangle(&mut self) {
+        let held = self.held();
+        let x = self.parametrization.positions();
+        let (triangulation, rest) = (&self.triangulation, &self.rest);
+        let untangled = self.profile.time("contact", || {
+            crate::repair::untangled(triangulation, rest, x, &held)
+        });
+        let moves: VertexData<Vector3> = untangled.iter().zip(x).map(|(a, b)| a - b).collect();
+        if moves.iter().any(|m| *m != Vector3::zeros()) {
+            self.parametrization.displace(&moves);
+        }
+    }
+
+    /// Takes a step back where it drove the surface through itself.
+    fn hold_back(&mut self, before: Option<&Positions>) {
+        let (Some(guard), Some(before)) = (&mut self.guard, before) else {
+            return;
+        };
+        let x = self.parametrization.positions();
+        let ground = ground(&self.triangulation, &self.rest);
+        let moves = self.profile.time("contact", || guard.held_back(ground, before, x));
+        if let Some(moves) = moves {
+            self.parametrization.displace(&moves);
+        }
     }
 
     /// Puts bodies and carried pieces where they belong.
@@ -232,12 +284,17 @@ impl Drape {
         self.landmarks.iter().flat_map(|l| l.source.vertices)
     }
 
+    /// What the last stage leaves where it is: vertices of landmarks and of rigid bodies.
+    fn held(&self) -> Vec<VertexId> {
+        self.marked().chain(self.guidance.rigid()).collect()
+    }
+
     /// The result: the positions, without the new folds, skinny triangles and crossings that can be taken out if the settings
     /// ask for it ([`crate::repair`]). The drape stays as it is and can go on.
     pub fn finish(&self) -> Repair {
         let positions = self.positions();
         if self.config.repair {
-            let held: Vec<VertexId> = self.marked().chain(self.guidance.rigid()).collect();
+            let held = self.held();
             crate::repair(&self.triangulation, &self.rest, &positions, &held)
         } else {
             let defects = crate::repair::defects(&self.triangulation, &self.rest, &positions);

@@ -93,6 +93,20 @@ pub fn repair(
     }
 }
 
+/// `x` without the crossings that can be taken out, whatever is folded.
+pub(crate) fn untangled(
+    triangulation: &Arc<Triangulation>,
+    rest: &Positions,
+    x: &Positions,
+    held: &[VertexId],
+) -> Positions {
+    let mut held = held.to_vec();
+    held.sort_unstable();
+    let judge = Judge::new(triangulation, rest);
+    let broken = judge.broken(x);
+    untangle(&judge, (x.clone(), broken), &held).positions
+}
+
 /// Positions without the folds and skinny triangles that could be taken out, and what of them is left.
 fn unfolded(
     judge: &Judge<'_>,

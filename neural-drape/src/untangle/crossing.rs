@@ -1,68 +1,92 @@
 //! Pairs of triangles that run through each other and did not at rest.
 
-use mesh_core::{Aabb, Point3, Positions, TriangleBvh, Triangulation, VertexId};
+use mesh_core::measure::triangle_normal;
+use mesh_core::{Aabb, Point3, Positions, TriangleBvh, Triangulation, Vector3, VertexId};
 use rayon::prelude::*;
 use robust::{orient3d, Coord3D};
 
 /// So many triangles are one piece of parallel work.
 const CHUNK: usize = 128;
+/// Triangles face each other when the cosine between their normals is below this.
+const FACING: f64 = 0.2;
+
+/// A surface that may run through itself only where it does at rest.
+#[derive(Clone, Copy)]
+pub(crate) struct Ground<'a> {
+    pub(crate) triangulation: &'a Triangulation,
+    pub(crate) rest: &'a Positions,
+}
+
+impl Ground<'_> {
+    fn corners(&self, row: u32, x: &Positions) -> [Point3; 3] {
+        self.triangulation.triangles()[row as usize].map(|v| x[v])
+    }
+
+    /// Whether two triangles cross at `x` and did not at rest.
+    fn is_new(&self, one: u32, other: u32, x: &Positions) -> bool {
+        let is_crossing =
+            |x: &Positions| is_crossing(&self.corners(one, x), &self.corners(other, x));
+        is_crossing(x) && !is_crossing(self.rest)
+    }
+}
 
 /// Finds crossings among some triangles, wherever they move.
-pub(super) struct Detector<'a> {
-    triangulation: &'a Triangulation,
-    rest: &'a Positions,
+#[derive(Clone, Debug)]
+pub(crate) struct Detector {
     /// The triangles that are looked at, ascending.
     rows: Vec<u32>,
     bvh: TriangleBvh,
 }
 
-impl<'a> Detector<'a> {
-    /// Looks at all triangles.
-    pub(super) fn new(triangulation: &'a Triangulation, rest: &'a Positions, x: &Positions) -> Self {
+impl Detector {
+    /// Looks at these triangles, ascending.
+    pub(crate) fn of(ground: Ground<'_>, x: &Positions, rows: Vec<u32>) -> Self {
+        let corners = rows.iter().map(|&row| ground.corners(row, x)).collect();
         Self {
-            triangulation,
-            rest,
-            rows: (0..triangulation.len() as u32).collect(),
-            bvh: TriangleBvh::new(triangulation.corners(x).collect()),
-        }
-    }
-
-    /// Looks at those triangles only that meet a box at `x`.
-    pub(super) fn within(&self, bounds: &Aabb, x: &Positions) -> Self {
-        let is_near = |&row: &u32| meets(bounds, &Aabb::of(&self.corners(row, x)));
-        let rows = self.rows.iter().copied().filter(is_near);
-        let rows: Vec<u32> = rows.collect();
-        let corners = rows.iter().map(|&row| self.corners(row, x)).collect();
-        Self {
-            triangulation: self.triangulation,
-            rest: self.rest,
             bvh: TriangleBvh::new(corners),
             rows,
         }
     }
 
+    /// Looks at all triangles.
+    pub(crate) fn new(ground: Ground<'_>, x: &Positions) -> Self {
+        Self::of(ground, x, (0..ground.triangulation.len() as u32).collect())
+    }
+
+    /// Looks at those of its triangles only that meet a box at `x`.
+    pub(super) fn within(&self, ground: Ground<'_>, bounds: &Aabb, x: &Positions) -> Self {
+        let is_near = |&row: &u32| meets(bounds, &Aabb::of(&ground.corners(row, x)));
+        let rows = self.rows.iter().copied().filter(is_near);
+        Self::of(ground, x, rows.collect())
+    }
+
+    /// The triangles that are looked at, ascending.
+    pub(crate) fn rows(&self) -> &[u32] {
+        &self.rows
+    }
+
     /// All pairs that cross at `x` and did not at rest.
-    pub(super) fn all_crossings(&mut self, x: &Positions) -> Vec<[u32; 2]> {
+    pub(crate) fn all_crossings(&mut self, ground: Ground<'_>, x: &Positions) -> Vec<[u32; 2]> {
         let rows = self.rows.clone();
-        self.crossings(x, &rows)
+        self.crossings(ground, x, &rows)
     }
 
     /// The pairs that cross at `x` and did not at rest, of which one at least is in `asked`, ascending: rows of triangles,
     /// the lower first, in order.
-    pub(super) fn crossings(&mut self, x: &Positions, asked: &[u32]) -> Vec<[u32; 2]> {
-        let (triangulation, rest, rows) = (self.triangulation, self.rest, &self.rows);
-        let corners_of = |row: u32, x: &Positions| triangulation.triangles()[row as usize].map(|v| x[v]);
-        self.bvh.refit(rows.iter().map(|&row| corners_of(row, x)));
+    pub(super) fn crossings(
+        &mut self,
+        ground: Ground<'_>,
+        x: &Positions,
+        asked: &[u32],
+    ) -> Vec<[u32; 2]> {
+        let rows = &self.rows;
+        self.bvh.refit(rows.iter().map(|&row| ground.corners(row, x)));
         let bvh = &self.bvh;
         let of = |&one: &u32| {
-            let corners = corners_of(one, x);
             let mut pairs = Vec::new();
-            bvh.for_each_overlapping(&Aabb::of(&corners), |other| {
+            bvh.for_each_overlapping(&Aabb::of(&ground.corners(one, x)), |other| {
                 let other = rows[other as usize];
-                let is_new = other != one
-                    && is_crossing(&corners, &corners_of(other, x))
-                    && !is_crossing(&corners_of(one, rest), &corners_of(other, rest));
-                if is_new {
+                if other != one && ground.is_new(one, other, x) {
                     pairs.push([one.min(other), one.max(other)]);
                 }
             });
@@ -75,8 +99,31 @@ impl<'a> Detector<'a> {
         pairs
     }
 
-    fn corners(&self, row: u32, x: &Positions) -> [Point3; 3] {
-        self.triangulation.triangles()[row as usize].map(|v| x[v])
+    /// The triangles that another, without a common corner and facing it, is nearer to than `reach`, at the most: what may
+    /// come to cross soon.
+    pub(crate) fn close(&self, ground: Ground<'_>, x: &Positions, reach: f64) -> Vec<u32> {
+        let triangles = ground.triangulation.triangles();
+        let normals: Vec<Vector3> = self
+            .rows
+            .par_iter()
+            .map(|&row| triangle_normal(ground.corners(row, x)).unwrap_or_default())
+            .collect();
+        let is_close = |&(k, &row): &(usize, &u32)| {
+            let mut bounds = Aabb::of(&ground.corners(row, x));
+            bounds.min.iter_mut().for_each(|c| *c -= reach);
+            bounds.max.iter_mut().for_each(|c| *c += reach);
+            let mut found = false;
+            self.bvh.for_each_overlapping(&bounds, |other| {
+                let other = other as usize;
+                let corners = &triangles[self.rows[other] as usize];
+                found = found
+                    || normals[k].dot(&normals[other]) < FACING
+                        && !triangles[row as usize].iter().any(|v| corners.contains(v));
+            });
+            found
+        };
+        let rows = self.rows.par_iter().enumerate().with_min_len(CHUNK);
+        rows.filter(is_close).map(|(_, &row)| row).collect()
     }
 }
 

@@ -7,15 +7,18 @@ use mesh_core::{Aabb, Positions, Triangulation, UnionFind, UnitFrame, VertexId};
 use mesh_loss::LocalShape;
 
 use crate::repair::{grown, Broken, Judge, Reach, Surroundings};
-use crossing::{triangles_at, Detector};
+use crossing::triangles_at;
+pub(crate) use crossing::{Detector, Ground};
 use push::push_apart;
 
 /// A patch grows to so many rings around what crosses, one size after the other.
 const RINGS: [usize; 6] = [1, 2, 4, 8, 14, 22];
 /// So often what crosses is pushed apart and the patch relaxed, for each size.
 const TURNS: usize = 30;
-/// So often a patch that came free is moved back towards where it was.
+/// So often a patch that came free is moved back towards where it was, ...
 const RETURNS: usize = 40;
+/// ... each vertex by this share of what is left at most: all at once, so that both sides of a contact give way.
+const RETURN: f64 = 0.15;
 /// So often vertices that get in the way stay behind, before nothing moves back.
 const STAYS: usize = 12;
 /// What is farther from a patch than this share of the longest side cannot get in its way; no vertex is moved farther.
@@ -36,8 +39,11 @@ pub(crate) fn crossings(
     rest: &Positions,
     x: &Positions,
 ) -> Vec<[usize; 2]> {
-    let pairs = Detector::new(triangulation, rest, x).all_crossings(x);
-    in_full(&pairs)
+    let ground = Ground {
+        triangulation,
+        rest,
+    };
+    in_full(&Detector::new(ground, x).all_crossings(ground, x))
 }
 
 fn in_full(pairs: &[[u32; 2]]) -> Vec<[usize; 2]> {
@@ -54,17 +60,20 @@ pub(crate) fn untangle(
     (x, broken): (Positions, Broken),
     held: &[VertexId],
 ) -> Untangled {
-    let (triangulation, rest) = (judge.triangulation(), judge.rest());
-    let mut detector = Detector::new(triangulation, rest, &x);
-    let mut left = detector.all_crossings(&x);
+    let ground = Ground {
+        triangulation: judge.triangulation(),
+        rest: judge.rest(),
+    };
+    let triangulation = ground.triangulation;
+    let mut detector = Detector::new(ground, &x);
+    let mut left = detector.all_crossings(ground, &x);
     let (mut positions, mut broken) = (x, broken);
     if !left.is_empty() {
         let untangler = Untangler {
-            triangulation,
-            rest,
+            ground,
             held,
             detector,
-            shape: LocalShape::new(triangulation, rest),
+            shape: LocalShape::new(triangulation, ground.rest),
             surroundings: Surroundings::new(judge),
             judge,
             reach: MAX_MOTION * UnitFrame::principal(positions.as_slice()).scale,
@@ -113,11 +122,10 @@ fn is_at(triangulation: &Triangulation, patch: &[VertexId], pair: &[u32; 2]) -> 
 
 /// Takes patches apart, one at a time.
 struct Untangler<'a> {
-    triangulation: &'a Triangulation,
-    rest: &'a Positions,
+    ground: Ground<'a>,
     held: &'a [VertexId],
     /// Of all triangles.
-    detector: Detector<'a>,
+    detector: Detector,
     shape: LocalShape,
     judge: &'a Judge<'a>,
     surroundings: Surroundings<'a>,
@@ -159,7 +167,7 @@ struct Case<'a, 'u> {
     free: Vec<VertexId>,
     /// The triangles that it moves.
     rows: Vec<u32>,
-    detector: Detector<'a>,
+    detector: Detector,
     near: Reach,
     /// What crosses elsewhere.
     others: Vec<[u32; 2]>,
@@ -177,14 +185,14 @@ impl<'a, 'u> Case<'a, 'u> {
         broken: &'u Broken,
         rings: usize,
     ) -> Self {
-        let mut free = grown(all.triangulation, patch, rings);
+        let mut free = grown(all.ground.triangulation, patch, rings);
         free.retain(|v| all.held.binary_search(v).is_err());
         let bounds = around(&free, x, all.reach);
         let others = known.iter().copied();
-        let others = others.filter(|pair| !is_at(all.triangulation, patch, pair));
+        let others = others.filter(|pair| !is_at(all.ground.triangulation, patch, pair));
         Self {
-            rows: triangles_at(all.triangulation, &free),
-            detector: all.detector.within(&bounds, x),
+            rows: triangles_at(all.ground.triangulation, &free),
+            detector: all.detector.within(all.ground, &bounds, x),
             near: all.surroundings.reach(&free),
             others: others.collect(),
             is_broken: all.judge.vertices(broken),
@@ -197,7 +205,7 @@ impl<'a, 'u> Case<'a, 'u> {
 
     /// What crosses at `y` and is no matter of another patch.
     fn crossings(&mut self, y: &Positions) -> Vec<[u32; 2]> {
-        let mut pairs = self.detector.crossings(y, &self.rows);
+        let mut pairs = self.detector.crossings(self.all.ground, y, &self.rows);
         pairs.retain(|pair| self.others.binary_search(pair).is_err());
         pairs
     }
@@ -218,7 +226,7 @@ impl<'a, 'u> Case<'a, 'u> {
             if pairs.is_empty() && self.newly_broken(y).is_empty() {
                 return true;
             }
-            push_apart(self.all.triangulation, self.all.rest, &pairs, y, &self.free);
+            push_apart(self.all.ground.triangulation, self.all.ground.rest, &pairs, y, &self.free);
             self.all.shape.relax(y, &self.free);
         }
         false
@@ -226,17 +234,16 @@ impl<'a, 'u> Case<'a, 'u> {
 
     /// Moves every vertex back towards where it was, as far as nothing crosses or folds.
     fn give_back(&mut self, y: &mut Positions) {
-        let mut shares = vec![0.15; self.free.len()];
+        let mut shares = vec![RETURN; self.free.len()];
         for _ in 0..RETURNS {
             let mut moved = y.clone();
             for (&v, share) in self.free.iter().zip(&shares) {
                 moved[v] = y[v] + (self.x[v] - y[v]) * *share;
             }
             if self.settle(y, &mut moved, &mut shares) {
-                for ((&v, share), row) in self.free.iter().zip(&mut shares).zip(0..) {
-                    let _: usize = row;
+                for (&v, share) in self.free.iter().zip(&mut shares) {
                     if moved[v] != y[v] {
-                        *share = (*share * 2.0).min(0.15);
+                        *share = (*share * 2.0).min(RETURN);
                     }
                 }
                 *y = moved;
@@ -251,7 +258,7 @@ impl<'a, 'u> Case<'a, 'u> {
     fn settle(&mut self, y: &Positions, moved: &mut Positions, shares: &mut [f64]) -> bool {
         for _ in 0..STAYS {
             let crossing = self.crossings(moved);
-            let triangles = self.all.triangulation.triangles();
+            let triangles = self.all.ground.triangulation.triangles();
             let corners = crossing.as_flattened().iter();
             let mut stay: Vec<VertexId> = corners.flat_map(|&t| triangles[t as usize]).collect();
             stay.extend(self.newly_broken(moved));
