@@ -1,5 +1,6 @@
 //! The last stage, second part: no surface runs through another that did not at rest.
 
+mod carry;
 mod crossing;
 mod push;
 
@@ -7,20 +8,21 @@ use mesh_core::{Aabb, Positions, Triangulation, UnionFind, UnitFrame, VertexId};
 use mesh_loss::LocalShape;
 
 use crate::repair::{grown, Broken, Judge, Reach, Surroundings};
+use carry::Carrier;
 use crossing::triangles_at;
 pub(crate) use crossing::{Detector, Ground};
 use push::push_apart;
 
 /// A patch grows to so many rings around what crosses, one size after the other.
-const RINGS: [usize; 6] = [1, 2, 4, 8, 14, 22];
+const RINGS: [usize; 5] = [1, 3, 6, 10, 16];
 /// So often what crosses is pushed apart and the patch relaxed, for each size.
-const TURNS: usize = 30;
+const TURNS: usize = 12;
 /// So often a patch that came free is moved back towards where it was, ...
-const RETURNS: usize = 40;
+const RETURNS: usize = 30;
 /// ... each vertex by this share of what is left at most: all at once, so that both sides of a contact give way.
 const RETURN: f64 = 0.15;
 /// So often vertices that get in the way stay behind, before nothing moves back.
-const STAYS: usize = 12;
+const STAYS: usize = 6;
 /// What is farther from a patch than this share of the longest side cannot get in its way; no vertex is moved farther.
 const MAX_MOTION: f64 = 0.08;
 
@@ -74,6 +76,7 @@ pub(crate) fn untangle(
             held,
             detector,
             shape: LocalShape::new(triangulation, ground.rest),
+            carrier: Carrier::new(triangulation, ground.rest),
             surroundings: Surroundings::new(judge),
             judge,
             reach: MAX_MOTION * UnitFrame::principal(positions.as_slice()).scale,
@@ -127,6 +130,7 @@ struct Untangler<'a> {
     /// Of all triangles.
     detector: Detector,
     shape: LocalShape,
+    carrier: Carrier<'a>,
     judge: &'a Judge<'a>,
     surroundings: Surroundings<'a>,
     reach: f64,
@@ -142,12 +146,9 @@ impl Untangler<'_> {
         known: &[[u32; 2]],
         broken: &Broken,
     ) -> Option<(Positions, Broken)> {
-        let mut moved = x.clone();
         RINGS.iter().find_map(|&rings| {
             let mut case = Case::new(self, x, patch, known, broken, rings);
-            if !case.pull_apart(&mut moved) {
-                return None;
-            }
+            let mut moved = case.pulled_apart()?;
             case.give_back(&mut moved);
             let is_near = |v: &VertexId| (moved[*v] - x[*v]).norm() <= self.reach;
             case.free.iter().all(is_near).then(|| {
@@ -219,10 +220,22 @@ impl<'a, 'u> Case<'a, 'u> {
         vertices
     }
 
+    /// Where nothing crosses and nothing is newly folded: from where it is, or else from where its surroundings carry it.
+    fn pulled_apart(&mut self) -> Option<Positions> {
+        let mut pushed = self.x.clone();
+        if self.pull_apart(&mut pushed) {
+            return Some(pushed);
+        }
+        let mut carried = self.x.clone();
+        let is_carried = self.all.carrier.carry(&mut carried, &self.free);
+        (is_carried && self.pull_apart(&mut carried)).then_some(carried)
+    }
+
     /// Pushes and relaxes until nothing crosses and nothing is newly folded; whether it comes to that.
     fn pull_apart(&mut self, y: &mut Positions) -> bool {
         for _ in 0..TURNS {
             let pairs = self.crossings(y);
+            if std::env::var("DBG").is_ok() { eprintln!("  free {} pairs {} broken {} others {}", self.free.len(), pairs.len(), self.newly_broken(y).len(), self.others.len()); }
             if pairs.is_empty() && self.newly_broken(y).is_empty() {
                 return true;
             }
