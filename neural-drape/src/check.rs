@@ -27,7 +27,12 @@ impl DrapeConfig {
             Setting::cosine("fold_limit", self.fold_limit),
         ];
         let contact = self.contact.iter();
-        settings.extend(contact.map(|contact| Setting::share("contact.from", contact.from)));
+        settings.extend(contact.flat_map(|contact| {
+            [
+                Setting::share("contact.part_at", contact.part_at),
+                Setting::share("contact.guard_from", contact.guard_from),
+            ]
+        }));
         settings.extend(self.learning_rate.settings());
         settings.extend(self.sampling.settings());
         let stages = self.stages.iter().enumerate();

@@ -18,15 +18,20 @@ const STAYS: usize = 8;
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ContactConfig {
-    /// The share of the run after which the coarse fit stands, 0..=1: what crosses then is taken out, and from then on no
-    /// step drives the surface through itself.
-    pub from: f64,
+    /// The share of the run after which the coarse fit stands, 0..=1: what crosses then is taken out.
+    pub part_at: f64,
+    /// The share of the run, 0..=1, from which no step drives the surface through itself; what crosses then is taken out
+    /// first. Before, steps are long beside the triangles, and vertices that are held back would stay behind for good.
+    pub guard_from: f64,
 }
 
 impl ContactConfig {
-    /// From three fifths of the run on.
+    /// When landmarks and structure have led, and over the last tenth of the run.
     pub const fn standard() -> Self {
-        Self { from: 0.6 }
+        Self {
+            part_at: 0.35,
+            guard_from: 0.9,
+        }
     }
 }
 

@@ -19,7 +19,10 @@ impl DrapeConfig {
             }];
         }
         if config.contact.is_some() {
-            config.contact = Some(ContactConfig { from: 0.0 });
+            config.contact = Some(ContactConfig {
+                part_at: 0.0,
+                guard_from: 0.5,
+            });
         }
         config.learning_rate = LearningRate {
             peak: STEP * self.learning_rate.peak,

@@ -207,16 +207,17 @@ impl Drape {
             .map(|p| self.frame.from_unit(p))
     }
 
-    /// Once the coarse fit stands, where the vertices are before a step that must not drive the surface through itself;
-    /// what crosses when this begins is taken out first.
+    /// Where the vertices are before a step that must not drive the surface through itself; none as long as steps may.
+    /// What crosses is taken out when the coarse fit stands, and again when steps are held back from then on.
     fn guarded(&mut self) -> Option<Positions> {
         let contact = self.config.contact?;
-        let first = (contact.from * self.n_iterations as f64) as usize;
+        let [parted, first] = [contact.part_at, contact.guard_from]
+            .map(|share| (share * self.n_iterations as f64) as usize);
+        if self.iteration == parted || self.iteration == first {
+            self.untangle();
+        }
         if self.iteration < first {
             return None;
-        }
-        if self.guard.is_none() {
-            self.untangle();
         }
         let x = self.parametrization.positions();
         if self.guard.is_none() || (self.iteration - first).is_multiple_of(PERIOD) {

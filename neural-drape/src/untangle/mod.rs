@@ -4,7 +4,7 @@ mod carry;
 mod crossing;
 mod push;
 
-use mesh_core::{Aabb, Positions, Triangulation, UnionFind, UnitFrame, VertexId};
+use mesh_core::{Aabb, Positions, TriangleBvh, Triangulation, UnionFind, UnitFrame, VertexId};
 use mesh_loss::LocalShape;
 
 use crate::repair::{grown, Broken, Judge, Reach, Surroundings};
@@ -21,6 +21,9 @@ const TURNS: usize = 12;
 const RETURNS: usize = 30;
 /// ... each vertex by this share of what is left at most: all at once, so that both sides of a contact give way.
 const RETURN: f64 = 0.15;
+/// What is farther than this share of the largest motion from where it was after half of the turns goes to the surface that
+/// was there instead.
+const STUCK: f64 = 0.02;
 /// So often vertices that get in the way stay behind, before nothing moves back.
 const STAYS: usize = 6;
 /// What is farther from a patch than this share of the longest side cannot get in its way; no vertex is moved farther.
@@ -235,7 +238,6 @@ impl<'a, 'u> Case<'a, 'u> {
     fn pull_apart(&mut self, y: &mut Positions) -> bool {
         for _ in 0..TURNS {
             let pairs = self.crossings(y);
-            if std::env::var("DBG").is_ok() { eprintln!("  free {} pairs {} broken {} others {}", self.free.len(), pairs.len(), self.newly_broken(y).len(), self.others.len()); }
             if pairs.is_empty() && self.newly_broken(y).is_empty() {
                 return true;
             }
@@ -248,10 +250,17 @@ impl<'a, 'u> Case<'a, 'u> {
     /// Moves every vertex back towards where it was, as far as nothing crosses or folds.
     fn give_back(&mut self, y: &mut Positions) {
         let mut shares = vec![RETURN; self.free.len()];
-        for _ in 0..RETURNS {
+        let sound = self.sound();
+        for turn in 0..RETURNS {
             let mut moved = y.clone();
             for (&v, share) in self.free.iter().zip(&shares) {
-                moved[v] = y[v] + (self.x[v] - y[v]) * *share;
+                let way = self.x[v] - y[v];
+                moved[v] = y[v] + way * *share;
+                if turn >= RETURNS / 2 && way.norm() > STUCK * self.all.reach {
+                    if let Some(hit) = sound.closest_point(&y[v]) {
+                        moved[v] = y[v] + (hit.point - y[v]) * *share;
+                    }
+                }
             }
             if self.settle(y, &mut moved, &mut shares) {
                 for (&v, share) in self.free.iter().zip(&mut shares) {
@@ -264,6 +273,18 @@ impl<'a, 'u> Case<'a, 'u> {
                 shares.iter_mut().for_each(|share| *share *= 0.5);
             }
         }
+    }
+
+    /// The surface that was there, without what crosses: it lies where the surface belongs.
+    fn sound(&mut self) -> TriangleBvh {
+        let crossing = self.detector.all_crossings(self.all.ground, self.x);
+        let mut crossing = crossing.as_flattened().to_vec();
+        crossing.sort_unstable();
+        let triangles = self.all.ground.triangulation.triangles();
+        let rows = self.detector.rows().iter();
+        let sound = rows.filter(|row| crossing.binary_search(row).is_err());
+        let corners = sound.map(|&row| triangles[row as usize].map(|v| self.x[v]));
+        TriangleBvh::new(corners.collect())
     }
 
     /// Takes back the moves of vertices that get in the way, until none does; they try half of it next time. Whether it
