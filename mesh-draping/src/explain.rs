@@ -208,7 +208,9 @@ impl Explanation {
     /// Where the worst places are and those where the surface runs through itself, in the target's coordinates.
     pub fn marks(&self) -> Vec<Point3> {
         let worst = self.places.iter().map(|p| p.point);
-        worst.chain(self.crossings.iter().map(|p| p.point)).collect()
+        worst
+            .chain(self.crossings.iter().map(|p| p.point))
+            .collect()
     }
 }
 

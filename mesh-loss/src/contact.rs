@@ -206,7 +206,10 @@ mod tests {
             x: &rest,
         };
         let contact = Contact::near(input, 0.1, 0.15);
-        assert!(contact.pairs().iter().all(|pair| pair.measure(&rest).0 >= 0.1));
+        assert!(contact
+            .pairs()
+            .iter()
+            .all(|pair| pair.measure(&rest).0 >= 0.1));
         assert_eq!(contact.near_at_rest().len(), rest.len());
     }
 

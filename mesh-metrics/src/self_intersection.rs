@@ -42,7 +42,10 @@ pub fn new_crossings(
     x: &Positions,
 ) -> Vec<[usize; 2]> {
     let pairs = self_intersections(triangulation, x);
-    without_neighbours(triangulation, &new_intersections(triangulation, rest, pairs))
+    without_neighbours(
+        triangulation,
+        &new_intersections(triangulation, rest, pairs),
+    )
 }
 
 /// Those pairs that do not pass through each other at `rest`.

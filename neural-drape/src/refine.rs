@@ -18,12 +18,10 @@ impl DrapeConfig {
                 to,
             }];
         }
-        if config.contact.is_some() {
-            config.contact = Some(ContactConfig {
-                part_at: 0.0,
-                guard_from: 0.5,
-            });
-        }
+        config.contact = self.contact.map(|contact| ContactConfig {
+            part_at: 0.0,
+            ..contact
+        });
         config.learning_rate = LearningRate {
             peak: STEP * self.learning_rate.peak,
             warm_up: 0,

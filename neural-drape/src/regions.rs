@@ -158,7 +158,9 @@ impl Guidance {
 
     /// Vertices that move as bodies.
     pub(crate) fn rigid(&self) -> impl Iterator<Item = VertexId> + '_ {
-        self.bodies.iter().flat_map(|body| body.vertices.iter().copied())
+        self.bodies
+            .iter()
+            .flat_map(|body| body.vertices.iter().copied())
     }
 
     /// Notes which vertices have pairs, for [`Follow::All`]; where both shapes are whole, all have.

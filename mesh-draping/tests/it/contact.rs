@@ -82,13 +82,26 @@ fn nearest(soup: &PolygonSoup, places: &[[f64; 3]]) -> Vec<u32> {
 
 fn assert_apart(outcome: &Outcome) {
     let defects = &outcome.report.defects;
-    assert_eq!((defects.crossings, defects.self_intersections_new), (0, 0), "{:?}", outcome.notes);
-    assert_eq!((defects.folds, defects.skinny_new), (0, 0), "{:?}", outcome.notes);
+    assert_eq!(
+        (defects.crossings, defects.self_intersections_new),
+        (0, 0),
+        "{:?}",
+        outcome.notes
+    );
+    assert_eq!(
+        (defects.folds, defects.skinny_new),
+        (0, 0),
+        "{:?}",
+        outcome.notes
+    );
 }
 
 /// A body of 2 m with two fingers of 10 cm at its top, `gap` apart.
 fn fingers(gap: f64) -> PolygonSoup {
-    let xs = [-0.2, -0.14, -0.08, -0.04, -0.025, -0.015, -0.005, 0.005, 0.015, 0.025, 0.04, 0.08, 0.14, 0.2];
+    let xs = [
+        -0.2, -0.14, -0.08, -0.04, -0.025, -0.015, -0.005, 0.005, 0.015, 0.025, 0.04, 0.08, 0.14,
+        0.2,
+    ];
     let ys = [-0.15, -0.08, -0.03, -0.01, 0.0, 0.01, 0.03, 0.08, 0.15];
     let zs = [steps(0.0, 1.9, 24), steps(1.9, 2.0, 10)[1..].to_vec()].concat();
     let mut soup = blocks([&xs, &ys, &zs], |[i, j, k]| {
@@ -103,11 +116,22 @@ fn fingers(gap: f64) -> PolygonSoup {
 #[test]
 fn fingers_two_millimetres_apart_stay_apart_where_those_of_the_target_run_through_each_other() {
     let (source, target) = (fingers(2e-3), fingers(-3e-3));
-    let corners = [[-0.2, -0.15, 0.0], [0.2, -0.15, 0.0], [0.2, 0.15, 0.0], [-0.2, 0.15, 1.9], [0.2, 0.15, 1.9], [-0.2, -0.15, 1.9]];
+    let corners = [
+        [-0.2, -0.15, 0.0],
+        [0.2, -0.15, 0.0],
+        [0.2, 0.15, 0.0],
+        [-0.2, 0.15, 1.9],
+        [0.2, 0.15, 1.9],
+        [-0.2, -0.15, 1.9],
+    ];
     let marked = nearest(&source, &corners);
     let outcome = draped(source, target, &marked);
     assert_apart(&outcome);
-    assert!(outcome.report.hausdorff < 0.01, "{}", outcome.report.hausdorff);
+    assert!(
+        outcome.report.hausdorff < 0.01,
+        "{}",
+        outcome.report.hausdorff
+    );
 }
 
 /// A head with a mouth whose lips touch all but for a tenth of a millimetre, and a bag behind them.
@@ -131,7 +155,13 @@ fn head(has_mouth: bool) -> PolygonSoup {
 #[test]
 fn lips_that_touch_stay_apart_and_the_bag_behind_them_whole_over_a_face_without_a_mouth() {
     let (source, target) = (head(true), head(false));
-    let corners = [[-0.1, -0.1, -0.1], [0.1, -0.1, -0.1], [0.1, 0.1, -0.1], [-0.1, 0.1, 0.1], [0.1, -0.1, 0.1]];
+    let corners = [
+        [-0.1, -0.1, -0.1],
+        [0.1, -0.1, -0.1],
+        [0.1, 0.1, -0.1],
+        [-0.1, 0.1, 0.1],
+        [0.1, -0.1, 0.1],
+    ];
     let marked = nearest(&source, &corners);
     assert_apart(&draped(source, target, &marked));
 }
@@ -144,14 +174,21 @@ fn arm_in_sleeve(arm: f64, sleeve: f64) -> PolygonSoup {
         let first = soup.positions.len() as u32;
         for x in steps(from, to, n) {
             for k in 0..n_around {
-                let (sin, cos) = (std::f64::consts::TAU * f64::from(k) / f64::from(n_around)).sin_cos();
-                soup.positions.push(Point3::new(x, radius * cos, radius * sin));
+                let (sin, cos) =
+                    (std::f64::consts::TAU * f64::from(k) / f64::from(n_around)).sin_cos();
+                soup.positions
+                    .push(Point3::new(x, radius * cos, radius * sin));
             }
         }
         for ring in 0..n as u32 {
             for k in 0..n_around {
                 let at = |ring: u32, k: u32| first + ring * n_around + k % n_around;
-                soup.faces.push(vec![at(ring, k), at(ring, k + 1), at(ring + 1, k + 1), at(ring + 1, k)]);
+                soup.faces.push(vec![
+                    at(ring, k),
+                    at(ring, k + 1),
+                    at(ring + 1, k + 1),
+                    at(ring + 1, k),
+                ]);
             }
         }
         if is_capped {
@@ -160,7 +197,11 @@ fn arm_in_sleeve(arm: f64, sleeve: f64) -> PolygonSoup {
                 soup.positions.push(Point3::new(x, 0.0, 0.0));
                 for k in 0..n_around {
                     let [a, b] = [k, (k + 1) % n_around].map(|k| first + ring * n_around + k);
-                    soup.faces.push(if ring == 0 { vec![tip, b, a] } else { vec![tip, a, b] });
+                    soup.faces.push(if ring == 0 {
+                        vec![tip, b, a]
+                    } else {
+                        vec![tip, a, b]
+                    });
                 }
             }
         }
@@ -173,7 +214,13 @@ fn arm_in_sleeve(arm: f64, sleeve: f64) -> PolygonSoup {
 #[test]
 fn a_sleeve_stays_around_its_arm_where_that_of_the_target_is_inside() {
     let (source, target) = (arm_in_sleeve(0.05, 0.053), arm_in_sleeve(0.052, 0.0515));
-    let ends = [[-0.55, 0., 0.], [0.55, 0., 0.], [0.0, 0.05, 0.0], [0.0, 0.0, 0.05], [0.3, 0.053, 0.0]];
+    let ends = [
+        [-0.55, 0., 0.],
+        [0.55, 0., 0.],
+        [0.0, 0.05, 0.0],
+        [0.0, 0.0, 0.05],
+        [0.3, 0.053, 0.0],
+    ];
     let marked = nearest(&source, &ends[..4]);
     assert_apart(&draped(source, target, &marked));
 }

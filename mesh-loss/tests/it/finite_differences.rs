@@ -8,9 +8,9 @@ use mesh_core::{
     TriangleSoup, Triangulation, UnitFrame, Vector3, VertexData, VertexId,
 };
 use mesh_loss::{
-    AreaKl, Chamfer, Conformal, Contact, ContactInput, CornerAngle, Drift, Flip, FoldBarrier, LandmarkDistance,
-    LocalShape, Loss, Matches, NormalAgreement, SamplingConfig, SurfaceMatcher, TriangleQuality,
-    WorstDistance,
+    AreaKl, Chamfer, Conformal, Contact, ContactInput, CornerAngle, Drift, Flip, FoldBarrier,
+    LandmarkDistance, LocalShape, Loss, Matches, NormalAgreement, SamplingConfig, SurfaceMatcher,
+    TriangleQuality, WorstDistance,
 };
 use proptest::prelude::*;
 

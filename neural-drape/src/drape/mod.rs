@@ -13,8 +13,8 @@ use mesh_loss::{Beyond, Matches, Overlap, SurfaceMatcher};
 
 use crate::config::{Descent, DrapeConfig};
 use crate::coverage::{mark_uncovered, Pairing, Target, FAR_BEYOND, N_BEYOND};
-use crate::input::check_length;
 use crate::guard::{ground, Guard, PERIOD};
+use crate::input::check_length;
 use crate::network::NetworkMap;
 use crate::objective::{self, DistanceLoss, StructuralLoss, TermReport};
 use crate::regions::{Follow, Guidance, Regions};
@@ -249,7 +249,9 @@ impl Drape {
         };
         let x = self.parametrization.positions();
         let ground = ground(&self.triangulation, &self.rest);
-        let moves = self.profile.time("contact", || guard.held_back(ground, before, x));
+        let moves = self
+            .profile
+            .time("contact", || guard.held_back(ground, before, x));
         if let Some(moves) = moves {
             self.parametrization.displace(&moves);
         }

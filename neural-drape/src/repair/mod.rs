@@ -244,7 +244,9 @@ pub(crate) fn grown(
         let around = edge
             .iter()
             .flat_map(|&v| triangulation.vertex_neighbours(v));
-        let around = around.copied().filter(|&w| !std::mem::replace(&mut is_in[w], true));
+        let around = around
+            .copied()
+            .filter(|&w| !std::mem::replace(&mut is_in[w], true));
         edge = around.collect();
     }
     triangulation.vertices().filter(|&v| is_in[v]).collect()

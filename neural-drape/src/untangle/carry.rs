@@ -1,7 +1,9 @@
 //! A patch as it was at rest, carried by what is around it.
 
 use mesh_core::{nearest_rotation, Positions, Triangulation, Vector3, VertexId};
-use mesh_operators::{bilaplacian, cotan_laplacian, voronoi_mass, CsrMatrix, FixedSolve, FixedSolveScratch};
+use mesh_operators::{
+    bilaplacian, cotan_laplacian, voronoi_mass, CsrMatrix, FixedSolve, FixedSolveScratch,
+};
 use nalgebra::Matrix3;
 
 use crate::repair::grown;
@@ -46,7 +48,8 @@ impl<'a> Carrier<'a> {
         for &v in free {
             x[v] = carried[v] + moves[v.index()];
         }
-        free.iter().all(|&v| x[v].coords.iter().all(|c| c.is_finite()))
+        free.iter()
+            .all(|&v| x[v].coords.iter().all(|c| c.is_finite()))
     }
 }
 

@@ -80,7 +80,8 @@ impl Detector {
         asked: &[u32],
     ) -> Vec<[u32; 2]> {
         let rows = &self.rows;
-        self.bvh.refit(rows.iter().map(|&row| ground.corners(row, x)));
+        self.bvh
+            .refit(rows.iter().map(|&row| ground.corners(row, x)));
         let bvh = &self.bvh;
         let of = |&one: &u32| {
             let mut pairs = Vec::new();

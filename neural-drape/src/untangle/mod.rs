@@ -14,7 +14,12 @@ pub(crate) use crossing::{Detector, Ground};
 use push::push_apart;
 
 /// A patch grows to so many rings around what crosses, one size after the other.
-const RINGS: [usize; 5] = [1, 3, 6, 10, 16];
+const RINGS: [usize; 6] = [1, 2, 3, 6, 10, 16];
+/// Of the ways to free a patch the one is taken that moves no vertex far; others are tried until this share of the largest
+/// motion is enough, ...
+const ENOUGH: f64 = 0.06;
+/// ... or a patch of so many rings came free.
+const WIDE: usize = 6;
 /// So often what crosses is pushed apart and the patch relaxed, for each size.
 const TURNS: usize = 12;
 /// So often a patch that came free is moved back towards where it was, ...
@@ -149,17 +154,39 @@ impl Untangler<'_> {
         known: &[[u32; 2]],
         broken: &Broken,
     ) -> Option<(Positions, Broken)> {
-        RINGS.iter().find_map(|&rings| {
+        let mut best: Option<(f64, Positions)> = None;
+        for rings in RINGS {
             let mut case = Case::new(self, x, patch, known, broken, rings);
-            let mut moved = case.pulled_apart()?;
-            case.give_back(&mut moved);
-            let is_near = |v: &VertexId| (moved[*v] - x[*v]).norm() <= self.reach;
-            case.free.iter().all(is_near).then(|| {
-                let broken = self.judge.broken_after(broken, &moved, &case.near);
-                (moved.clone(), broken)
-            })
+            for start in [Start::AsItIs, Start::Carried] {
+                let Some(mut moved) = case.pulled_apart(start) else {
+                    continue;
+                };
+                case.give_back(&mut moved);
+                let far = case.free.iter().map(|&v| (moved[v] - x[v]).norm());
+                let far = far.fold(0.0, f64::max);
+                if far <= best.as_ref().map_or(self.reach, |(least, _)| *least) {
+                    best = Some((far, moved));
+                }
+            }
+            let is_good = |(far, _): &(f64, Positions)| *far <= ENOUGH * self.reach;
+            if best.as_ref().is_some_and(is_good) || best.is_some() && rings >= WIDE {
+                break;
+            }
+        }
+        best.map(|(_, moved)| {
+            let broken = self.judge.broken(&moved);
+            (moved, broken)
         })
     }
+}
+
+/// From where a patch is pulled apart.
+#[derive(Clone, Copy, Debug)]
+enum Start {
+    /// From where it is.
+    AsItIs,
+    /// From where its surroundings carry it.
+    Carried,
 }
 
 /// A patch with its surroundings up to a number of rings.
@@ -223,15 +250,14 @@ impl<'a, 'u> Case<'a, 'u> {
         vertices
     }
 
-    /// Where nothing crosses and nothing is newly folded: from where it is, or else from where its surroundings carry it.
-    fn pulled_apart(&mut self) -> Option<Positions> {
-        let mut pushed = self.x.clone();
-        if self.pull_apart(&mut pushed) {
-            return Some(pushed);
-        }
-        let mut carried = self.x.clone();
-        let is_carried = self.all.carrier.carry(&mut carried, &self.free);
-        (is_carried && self.pull_apart(&mut carried)).then_some(carried)
+    /// Where nothing crosses and nothing is newly folded; none where it does not come to that.
+    fn pulled_apart(&mut self, start: Start) -> Option<Positions> {
+        let mut y = self.x.clone();
+        let is_started = match start {
+            Start::AsItIs => true,
+            Start::Carried => self.all.carrier.carry(&mut y, &self.free),
+        };
+        (is_started && self.pull_apart(&mut y)).then_some(y)
     }
 
     /// Pushes and relaxes until nothing crosses and nothing is newly folded; whether it comes to that.
@@ -241,7 +267,13 @@ impl<'a, 'u> Case<'a, 'u> {
             if pairs.is_empty() && self.newly_broken(y).is_empty() {
                 return true;
             }
-            push_apart(self.all.ground.triangulation, self.all.ground.rest, &pairs, y, &self.free);
+            push_apart(
+                self.all.ground.triangulation,
+                self.all.ground.rest,
+                &pairs,
+                y,
+                &self.free,
+            );
             self.all.shape.relax(y, &self.free);
         }
         false

@@ -16,7 +16,8 @@ const FAR: f64 = 0.08;
 /// What faced each other at rest, as two fingers do, belongs before: the sign of `(c_s − c_t)·n_t + (c_t − c_s)·n_s` at
 /// rest, with middles c and normals n. What had the other behind it, as the lining of a lip, belongs behind.
 fn order(s: &[Point3; 3], t: &[Point3; 3], far: f64) -> f64 {
-    let between = (s[0].coords + s[1].coords + s[2].coords) - (t[0].coords + t[1].coords + t[2].coords);
+    let between =
+        (s[0].coords + s[1].coords + s[2].coords) - (t[0].coords + t[1].coords + t[2].coords);
     let normal = |t: &[Point3; 3]| triangle_normal(*t).unwrap_or_default();
     if between.norm() > 3.0 * far {
         return 1.0;
