@@ -62,11 +62,11 @@ fn draped(source: PolygonSoup, target: PolygonSoup, marked: &[u32]) -> Outcome {
         Landmark::new(VertexId::new(row), source.positions[row])
     };
     let landmarks: Vec<Landmark> = marked.iter().map(landmark).collect();
-    let source = Source::of_soup(source, Seams::EXACT).unwrap();
-    let target = Target::of_soup(target).unwrap();
+    let source = Source::of_soup(source, Seams::EXACT).expect("a mesh");
+    let target = Target::of_soup(target).expect("a surface");
     Transfer::new(&source, &target, &landmarks, Preset::quick())
         .run()
-        .unwrap()
+        .expect("a drape")
 }
 
 /// The vertices nearest to some places.
