@@ -199,10 +199,11 @@ mod tests {
         let (mesh, x) = both.into_halfedge().unwrap();
         let triangulation = Triangulation::new(&mesh, &x);
         let apart = |by: f64| -> Positions {
-            let by = |row: usize| if row < n { 0.0 } else { by };
+            // Not along an axis: edges of mirror images would meet edges, which is touching.
+            let shift = Vector3::new(by, 0.1, 0.03);
+            let by = |row: usize| if row < n { Vector3::zeros() } else { shift };
             let rows = x.iter().enumerate();
-            rows.map(|(row, p)| p + Vector3::new(by(row), 0.1, 0.03))
-                .collect()
+            rows.map(|(row, p)| p + by(row)).collect()
         };
         let (rest, crossed) = (apart(3.0), apart(0.7));
         let crossings = new_crossings(&triangulation, &rest, &crossed);
