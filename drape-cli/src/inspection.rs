@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::fmt;
 
-use mesh_core::io::MeshFile;
+use mesh_core::io::{printable, MeshFile};
 use mesh_core::{measure, Aabb, HalfedgeMesh, Triangulation};
 use serde::Serialize;
 
@@ -203,7 +203,7 @@ impl Inspection {
     }
 
     fn extras(&self) -> Vec<TextRow> {
-        let references = self.references.join(", ");
+        let references = printable(&self.references.join(", ")).into_owned();
         vec![
             ("texture coordinates", count(self.texture_coordinates)),
             ("normals", count(self.normals)),
@@ -273,7 +273,7 @@ fn names(list: &[Named]) -> String {
     let shown: Vec<String> = list
         .iter()
         .take(SHOWN)
-        .map(|n| format!("{} ({} faces)", n.name, n.faces))
+        .map(|n| format!("{} ({} faces)", printable(&n.name), n.faces))
         .collect();
     let more = if list.len() > SHOWN {
         format!(", {} more", list.len() - SHOWN)

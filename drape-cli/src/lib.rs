@@ -16,6 +16,7 @@ mod output;
 mod profile;
 mod progress;
 mod requirement;
+mod study;
 mod suite;
 mod usage;
 mod words;
@@ -90,7 +91,8 @@ fn refuse(error: &clap::Error) -> ExitCode {
     ExitCode::from(FAILED)
 }
 
-/// Text without line breaks.
+/// Text without line breaks, and without what a terminal would take as a command.
 fn one_line(text: &str) -> String {
-    text.lines().map(str::trim).collect::<Vec<_>>().join(" ")
+    let joined = text.lines().map(str::trim).collect::<Vec<_>>().join(" ");
+    mesh_core::io::printable(&joined).into_owned()
 }

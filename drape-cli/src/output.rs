@@ -17,7 +17,7 @@ pub(crate) fn say(text: &str) -> io::Result<()> {
 /// Prints warnings where they do not mix with results.
 pub(crate) fn warn(warnings: &[String]) {
     for warning in warnings {
-        eprintln!("warning: {warning}");
+        eprintln!("warning: {}", printable(warning));
     }
 }
 
@@ -30,7 +30,7 @@ pub(crate) fn findings(file: &MeshFile) -> Vec<String> {
         .collect()
 }
 
-/// Refuses an output whose folder is not there, before any work is done.
+/// Refuses an output that cannot be written, before any work is done.
 pub(crate) fn check_writable(path: &Path) -> anyhow::Result<()> {
     if path.is_dir() {
         bail!("{}: is a folder; name a file", path.display());
@@ -44,7 +44,7 @@ pub(crate) fn check_writable(path: &Path) -> anyhow::Result<()> {
                 folder.display()
             )
         }
-        _ => Ok(()),
+        _ => Ok(mesh_core::io::check_writable(path)?),
     }
 }
 

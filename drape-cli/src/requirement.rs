@@ -5,7 +5,7 @@ use std::process::ExitCode;
 use std::str::FromStr;
 
 /// Figures that a requirement may name, in the order of a report.
-const NAMES: [&str; 33] = [
+const NAMES: [&str; 34] = [
     "q_transfer",
     "dirichlet",
     "dirichlet_raw",
@@ -36,6 +36,7 @@ const NAMES: [&str; 33] = [
     "truth_mean",
     "truth_p95",
     "truth_max",
+    "left_out",
     "cpu_seconds",
     "wall_seconds",
     "peak_mb",

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use mesh_core::io::{ReadError, WriteError};
-use mesh_core::TopologyError;
+use mesh_core::{Point3, PolygonSoup, TopologyError};
 use mesh_init::InitError;
 use mesh_metrics::EvaluateError;
 use neural_drape::{DrapeError, WarpError};
@@ -73,9 +73,72 @@ pub enum MeshProblem {
     /// Its elements do not fit together.
     #[error(transparent)]
     Topology(#[from] TopologyError),
+    /// A shape that is a single point.
+    #[error("all its points are at one place; a shape has an extent")]
+    NoExtent,
+    /// A face that is there too often to be worked with.
+    #[error(
+        "face {face} (counted from 0) is there {n_copies} times, all at the same corners; remove the copies"
+    )]
+    Copies {
+        /// Row of the first of them.
+        face: usize,
+        /// How many there are.
+        n_copies: usize,
+    },
     /// A source without a surface.
     #[error("no face has three different corners")]
     NoTriangle,
+}
+
+/// Refuses points that are all one.
+pub(crate) fn check_extent<'p>(points: impl IntoIterator<Item = &'p Point3>) -> Result<(), Error> {
+    let mut points = points.into_iter();
+    let is_one = points
+        .next()
+        .is_some_and(|first| points.all(|p| p == first));
+    match is_one {
+        true => Err(MeshProblem::NoExtent.into()),
+        false => Ok(()),
+    }
+}
+
+/// A source may have a face this many times: what is measured between its faces grows with the square.
+const MOST_COPIES: usize = 100;
+
+/// Refuses faces of which one is there more often than [`MOST_COPIES`]; they name vertices that are there.
+pub(crate) fn check_copies(soup: &PolygonSoup) -> Result<(), Error> {
+    let faces = &soup.faces;
+    let mut n_faces_at = vec![0usize; soup.positions.len()];
+    for &v in faces.iter().flatten() {
+        n_faces_at[v as usize] += 1;
+    }
+    // Only where very many faces meet at every corner can one be there very many times.
+    let is_crowded = |face: &Vec<u32>| face.iter().all(|&v| n_faces_at[v as usize] > MOST_COPIES);
+    let crowded = faces
+        .iter()
+        .enumerate()
+        .filter(|(_, face)| is_crowded(face));
+    let mut corners: Vec<(Vec<u32>, usize)> = crowded
+        .map(|(row, face)| {
+            let mut corners = face.clone();
+            corners.sort_unstable();
+            (corners, row)
+        })
+        .collect();
+    corners.sort_unstable();
+    let copies = corners
+        .chunk_by(|a, b| a.0 == b.0)
+        .filter(|same| same.len() > MOST_COPIES);
+    let first = copies.min_by_key(|same| same[0].1);
+    match first {
+        Some(same) => Err(MeshProblem::Copies {
+            face: same[0].1,
+            n_copies: same.len(),
+        }
+        .into()),
+        None => Ok(()),
+    }
 }
 
 /// Names the file in what is wrong with a mesh.

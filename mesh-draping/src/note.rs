@@ -4,6 +4,9 @@ use std::fmt;
 
 use mesh_core::io::{Finding, MeshFile};
 
+/// From this share on, what is left out of a shape is most of it.
+const MOST: f64 = 0.5;
+
 /// Which of the two shapes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Shape {
@@ -163,12 +166,21 @@ impl fmt::Display for Note {
                 "the source is dense: {n_vertices} of its {n_source} vertices were draped first and carried the \
                  others, then all were refined"
             ),
-            Self::LeftOut { shape, share } => write!(
-                f,
-                "{:.0} % of the {shape} lies beyond the {} and was left out",
-                100.0 * share,
-                shape.other()
-            ),
+            Self::LeftOut { shape, share } => {
+                let (percent, other) = (100.0 * share, shape.other());
+                if share > MOST {
+                    return write!(
+                        f,
+                        "MOST OF THE {}, {percent:.0} %, lies beyond the {other} and was left out: only the rest was \
+                         draped",
+                        shape.to_string().to_uppercase()
+                    );
+                }
+                write!(
+                    f,
+                    "{percent:.0} % of the {shape} lies beyond the {other} and was left out"
+                )
+            }
             Self::Repaired { .. }
             | Self::Uncrossed { .. }
             | Self::CrossingLeft { .. }
@@ -352,5 +364,10 @@ mod tests {
         };
         let expected = "25 % of the source lies beyond the target and was left out";
         assert_eq!(left_out.to_string(), expected);
+        let most = Note::LeftOut {
+            shape: Shape::Target,
+            share: 0.625,
+        };
+        assert!(most.to_string().starts_with("MOST OF THE TARGET, 62 %"));
     }
 }

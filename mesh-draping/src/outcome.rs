@@ -65,6 +65,15 @@ impl Outcome {
         })
     }
 
+    /// The share of a shape's area that lies beyond the other and was left out, 0..=1: the larger of both shapes'.
+    pub fn left_out(&self) -> f64 {
+        let shares = self.notes.iter().filter_map(|note| match note {
+            Note::LeftOut { share, .. } => Some(*share),
+            _ => None,
+        });
+        shares.fold(0.0, f64::max)
+    }
+
     /// Writes the source's file with its vertices at the result: in its own format nothing else changes.
     ///
     /// # Errors

@@ -8,7 +8,7 @@ use neural_drape::DrapeConfig;
 use serde::de::DeserializeOwned;
 use toml::{Table, Value};
 
-use crate::InitialMethod;
+use crate::{plain_words, InitialMethod};
 
 /// How a source is draped: the initial deformation and the drape itself.
 ///
@@ -32,11 +32,12 @@ pub struct Preset {
 /// A name, and what it stands for.
 type Named = (&'static str, fn() -> Preset);
 
-const PRESETS: [Named; 4] = [
+const PRESETS: [Named; 5] = [
     ("standard", Preset::standard),
     ("quick", Preset::quick),
     ("network", Preset::network),
     ("paper", Preset::paper),
+    ("authors", Preset::authors),
 ];
 
 impl Preset {
@@ -63,6 +64,14 @@ impl Preset {
         }
     }
 
+    /// The authors' program ([`DrapeConfig::authors`]), its initial deformation included.
+    pub fn authors() -> Self {
+        Self {
+            initial: InitialMethod::Paper,
+            ..Self::of_drape("authors", DrapeConfig::authors())
+        }
+    }
+
     fn of_drape(name: &str, drape: DrapeConfig) -> Self {
         Self {
             name: name.to_owned(),
@@ -82,10 +91,14 @@ impl Preset {
         let mut presets: Vec<Self> = studies
             .map(|study| Self::of_drape(study.name, study.config))
             .collect();
-        presets.push(Self {
-            initial: InitialMethod::Affine,
-            ..Self::of_drape("study-affine-start", DrapeConfig::study())
-        });
+        let starts = [
+            ("study-biharmonic-start", InitialMethod::Paper),
+            ("study-affine-start", InitialMethod::Affine),
+        ];
+        presets.extend(starts.map(|(name, initial)| Self {
+            initial,
+            ..Self::of_drape(name, DrapeConfig::study())
+        }));
         presets
     }
 
@@ -200,7 +213,7 @@ fn parse(text: &str) -> Result<Table, PresetProblem> {
             .map_or("", |span| text.get(..span.start).unwrap_or(text));
         PresetProblem::Syntax {
             line: before.lines().count().max(1),
-            message: error.message().replace('\n', ", "),
+            message: plain_words(&error.message().replace('\n', ", ")),
         }
     })
 }
@@ -215,9 +228,8 @@ fn over(mut overrides: Table, preset: Option<&str>) -> Result<Preset, PresetProb
         Some(name) => Preset::named(&name).map_err(|error| error.problem)?,
         None => Preset::standard(),
     };
-    let setting = |error: &dyn std::fmt::Display| {
-        PresetProblem::Setting(error.to_string().trim().replace('\n', " "))
-    };
+    let setting =
+        |error: &dyn std::fmt::Display| PresetProblem::Setting(plain_words(&error.to_string()));
     let mut merged = Value::try_from(&preset.drape).map_err(|error| setting(&error))?;
     merge(&mut merged, Value::Table(overrides));
     let drape = merged.try_into();
@@ -239,7 +251,7 @@ fn take<T: DeserializeOwned>(
     let value = value.try_into();
     let wrong = |error: toml::de::Error| PresetProblem::Value {
         key,
-        message: error.message().to_owned(),
+        message: plain_words(error.message()),
     };
     value.map(Some).map_err(wrong)
 }
@@ -307,6 +319,7 @@ mod tests {
         let initial = |name: &str| Preset::named(name).unwrap().initial;
         assert_eq!(initial("standard"), InitialMethod::Tried);
         assert_eq!(initial("paper"), InitialMethod::Paper);
+        assert_eq!(initial("authors"), InitialMethod::Paper);
         assert_eq!(initial("study"), InitialMethod::Tried);
         assert_eq!(initial("study-affine-start"), InitialMethod::Affine);
     }

@@ -10,7 +10,7 @@ use mesh_core::{
     Triangulation, VertexId, Weld,
 };
 
-use crate::error::{in_file, MeshProblem};
+use crate::error::{check_copies, check_extent, in_file, MeshProblem};
 use crate::{Error, Note, Seams, Shape};
 
 /// A mesh to deform: connectivity, rest positions, its polygons as triangles, and its file, to write it back.
@@ -79,10 +79,14 @@ impl Source {
     /// A mesh that has no file.
     ///
     /// # Errors
-    /// A face that names a vertex that is not there, a coordinate that is not finite, or no triangle.
+    /// A face that names a vertex that is not there, a coordinate that is not finite, no triangle, all vertices at one
+    /// place, or a face that is there very many times.
     pub fn of_soup(soup: PolygonSoup, seams: Seams) -> Result<Self, Error> {
         soup.check().map_err(MeshProblem::from)?;
-        Self::of_weld(seams.weld(soup))
+        let weld = seams.weld(soup);
+        check_extent(&weld.soup.positions)?;
+        check_copies(&weld.soup)?;
+        Self::of_weld(weld)
     }
 
     /// Of vertices whose seams are closed.

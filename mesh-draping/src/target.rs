@@ -9,7 +9,7 @@ use mesh_core::{
     Triangulation, Vector3,
 };
 
-use crate::error::{in_file, MeshProblem};
+use crate::error::{check_extent, in_file, MeshProblem};
 use crate::{Error, Note, Shape};
 
 /// A shape to drape over: a mesh with any defect, or a cloud where there are no faces.
@@ -58,9 +58,16 @@ impl Target {
     /// A surface of polygons: slivers, crumbs, fins and inner walls that no ray from outside reaches are left out.
     ///
     /// # Errors
-    /// A face that names a vertex that is not there, a coordinate that is not finite, or no triangle.
+    /// A face that names a vertex that is not there, a coordinate that is not finite, no triangle, or all corners at one
+    /// place.
     pub fn of_soup(soup: PolygonSoup) -> Result<Self, Error> {
         soup.check().map_err(MeshProblem::from)?;
+        check_extent(
+            soup.faces
+                .iter()
+                .flatten()
+                .map(|&v| &soup.positions[v as usize]),
+        )?;
         let mut surface = TriangleSoup::new(soup.clone()).map_err(MeshProblem::from)?;
         let strays = surface.strays();
         let mut notes = Vec::new();
@@ -91,9 +98,10 @@ impl Target {
     /// scatter about the surface count where the planes of their neighbours run.
     ///
     /// # Errors
-    /// No point, another number of normals, or a coordinate that is not finite.
+    /// No point, another number of normals, a coordinate that is not finite, or all points at one place.
     pub fn of_points(points: Vec<Point3>, normals: Option<Vec<Vector3>>) -> Result<Self, Error> {
         let cloud = PointCloud::new(points.clone(), normals.clone()).map_err(MeshProblem::from)?;
+        check_extent(&points)?;
         let mut notes = Vec::new();
         let cloud = match without_strays(&cloud, &points, normals.as_deref()) {
             Some((kept, kept_normals)) => {

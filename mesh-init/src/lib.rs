@@ -8,6 +8,7 @@
 //! | fit as much of an affine map as landmarks determine | [`fit_affine`] |
 //! | find how the source stands, without landmarks | [`find_pose`] |
 //! | bring a source into the pose of its target, by where on the body places are | [`Guide`] |
+//! | measure how far landmarks are from each other along both shapes | [`LandmarkWays`] |
 //! | spread displacements smoothly | [`biharmonic_displacement`] |
 //! | spread rotations and scales smoothly | [`SimilarSolver`] |
 //! | deform as rigidly as possible | [`ArapSolver`] |
@@ -51,7 +52,7 @@ pub use arap::{ArapScratch, ArapSolver};
 pub use biharmonic::{biharmonic_displacement, BiharmonicSolver};
 pub use config::{InitConfig, Pinning, Spread};
 pub use error::InitError;
-pub use guide::{Guide, GuideConfig, GuideInput};
+pub use guide::{Guide, GuideConfig, GuideInput, LandmarkWays};
 pub use initialize::{adjust, initialize, point_pairs, InitInput, Initial};
 pub use interactive::InteractiveInit;
 pub use pose::{find_pose, Pose, PoseInput};

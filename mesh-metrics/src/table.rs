@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use mesh_core::io::printable;
+
 use crate::distances::TargetKind;
 use crate::report::{Defects, LandmarkFit, Report};
 
@@ -130,10 +132,10 @@ fn write_landmarks(f: &mut fmt::Formatter<'_>, fit: &LandmarkFit) -> fmt::Result
     let [rms, max] = [fit.rms, fit.max].map(|d| d * HUNDREDTHS);
     writeln!(f, "landmarks, e-2             rms {rms:.3}, worst {max:.3}")?;
     for (row, residual) in fit.residuals.iter().enumerate() {
-        let name = residual
-            .name
-            .clone()
-            .unwrap_or_else(|| format!("landmark {row}"));
+        let name = match &residual.name {
+            Some(name) => printable(name).into_owned(),
+            None => format!("landmark {row}"),
+        };
         writeln!(f, "  {name:<24}{:>10.4}", residual.distance * HUNDREDTHS)?;
     }
     Ok(())

@@ -100,6 +100,7 @@ impl Sampling {
         let mut settings = vec![
             Setting::count("sampling.n_samples", self.n_samples),
             Setting::count_or_none("sampling.max_samples", self.max_samples),
+            Setting::count("sampling.keep_for", self.keep_for),
             Setting::share("sampling.face_uniform", self.face_uniform),
             Setting::count_or_none("sampling.n_hard", self.n_hard),
         ];
@@ -178,11 +179,13 @@ impl NetworkConfig {
     fn memory(&self, n_vertices: usize) -> (&'static str, usize, f64) {
         let n_features = self.encoding.n_features() as f64;
         let (width, n_layers) = (self.width as f64, self.n_hidden_layers as f64);
+        let n_networks = self.encoding.n_networks() as f64;
         // Parameters, their gradient in each of 16 lanes, and what Adam and the tape keep of them.
         let n_parameters = (n_features + n_layers * width + 3.0) * width;
-        let parameters = 24.0 * 4.0 * n_parameters + 1000.0 * n_layers;
+        let parameters = n_networks * (24.0 * 4.0 * n_parameters + 1000.0 * n_layers);
         // Features with their slopes and what leaves each layer, twice while they are laid out.
-        let activations = 8.0 * n_vertices as f64 * (2.0 * n_features + n_layers * width);
+        let of_layers = n_networks * n_layers * width;
+        let activations = 8.0 * n_vertices as f64 * (2.0 * n_features + of_layers);
         let settings = [
             ("width", self.width),
             ("n_hidden_layers", self.n_hidden_layers),

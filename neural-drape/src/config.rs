@@ -1,11 +1,11 @@
 //! Every setting of a drape. Lengths are in the unit frame of the target: its longest side is 1.
 
-use mesh_core::{Positions, Triangulation};
+use mesh_core::Triangulation;
 use mesh_loss::{Overlap, SamplingConfig};
 use serde::{Deserialize, Serialize};
 
 use crate::guard::ContactConfig;
-use crate::network::NetworkConfig;
+use crate::network::{NetworkConfig, Shapes};
 use crate::schedule::{LearningRate, Stage};
 use crate::vertices::{Vertices, VerticesConfig};
 use crate::{DrapeError, Parametrization};
@@ -63,18 +63,20 @@ pub enum ParametrizationConfig {
 }
 
 impl ParametrizationConfig {
-    /// The map that moves `initial`, in the unit frame, with its optimiser.
+    /// The map that moves `shapes.initial`, in the unit frame, with its optimiser.
     pub(crate) fn build(
         &self,
         triangulation: &Triangulation,
-        initial: &Positions,
+        shapes: Shapes<'_>,
         seed: u64,
     ) -> Result<Box<dyn Parametrization>, DrapeError> {
         match self {
-            Self::Network(network) => network.build(initial, seed),
-            Self::Vertices(vertices) => {
-                Ok(Box::new(Vertices::new(triangulation, initial, vertices)?))
-            }
+            Self::Network(network) => network.build(shapes, seed),
+            Self::Vertices(vertices) => Ok(Box::new(Vertices::new(
+                triangulation,
+                shapes.initial,
+                vertices,
+            )?)),
         }
     }
 }
@@ -83,7 +85,8 @@ impl ParametrizationConfig {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Descent {
-    /// Two optimiser steps an iteration: the distance terms, then the structural ones (the paper).
+    /// Two optimiser steps an iteration: the distance terms, then the structural ones (the paper). The penalty on skinny
+    /// triangles, which the paper gives to neither, counts in both (the authors' program).
     Alternating,
     /// One step on the sum.
     Combined,
@@ -126,6 +129,9 @@ pub struct Sampling {
     pub double_every: Option<usize>,
     /// ... up to this many.
     pub max_samples: usize,
+    /// They stay where they are for this many iterations, ≥ 1: 1 draws them anew each time. Those that are drawn by area move
+    /// on as areas change.
+    pub keep_for: usize,
     /// Share of the mesh's samples drawn by face instead of by area, 0..=1.
     pub face_uniform: f64,
     /// Pairs count by clamp(n·n′ + bias, 0.05, 1); without it all count 1.
@@ -134,7 +140,16 @@ pub struct Sampling {
     pub n_hard: usize,
 }
 
+/// Each period of [`Sampling::keep_for`] has so many random words of its own.
+const WORDS_PER_PERIOD: u128 = 1 << 40;
+
 impl Sampling {
+    /// Where in its sequence the generator draws the samples of an iteration from; none where it just goes on.
+    pub(crate) fn draws_from(&self, iteration: usize) -> Option<u128> {
+        let period = iteration / self.keep_for;
+        (self.keep_for > 1).then(|| (1 + period as u128) * WORDS_PER_PERIOD)
+    }
+
     pub(crate) fn at(&self, iteration: usize, overlap: Overlap, mutual: f64) -> SamplingConfig {
         let doublings = self.double_every.map_or(0, |every| iteration / every);
         let factor = 1usize
@@ -185,5 +200,22 @@ mod tests {
             ..sampling
         };
         assert_eq!(iterations.map(|i| n(bound_below, i)), [1000; 8]);
+    }
+
+    #[test]
+    fn samples_that_stay_are_drawn_from_the_same_words_for_so_many_iterations() {
+        let sampling = Sampling {
+            keep_for: 100,
+            ..DrapeConfig::standard().sampling
+        };
+        let from = |iteration| sampling.draws_from(iteration);
+        assert_eq!(from(0), from(99));
+        assert_eq!(from(100), from(199));
+        assert!(from(0) < from(100) && from(1399) < from(1400));
+        let anew = Sampling {
+            keep_for: 1,
+            ..sampling
+        };
+        assert_eq!([0, 1, 700].map(|i| anew.draws_from(i)), [None; 3]);
     }
 }

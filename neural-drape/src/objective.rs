@@ -90,8 +90,8 @@ impl<'a> DistanceLoss<'a> {
     }
 }
 
-/// L_s (Eq. 3), angles and areas, with the penalty on skinny triangles (Eq. 4) and the terms beyond the paper that depend
-/// on the mesh alone.
+/// L_s (Eq. 3), angles and areas, with the terms beyond the paper that depend on the mesh alone; and beside it the penalty on
+/// skinny triangles (Eq. 4), which belongs to neither side of Eq. 1.
 pub(crate) struct StructuralLoss {
     corner_angle: CornerAngle,
     area_kl: AreaKl,
@@ -126,12 +126,17 @@ impl StructuralLoss {
         }
     }
 
+    /// Eq. 4 as a penalty.
+    pub(crate) fn skinny(&self, w: &Weights) -> Term<'_> {
+        ("skinny", w.triangle_quality, &self.triangle_quality)
+    }
+
     /// Eq. 3, each term by λ, then Eq. 4 and what is beyond the paper.
     pub(crate) fn terms(&self, w: &Weights) -> [Term<'_>; 8] {
         [
             ("angles", w.corner_angle, &self.corner_angle),
             ("areas", w.area_kl, &self.area_kl),
-            ("skinny", w.triangle_quality, &self.triangle_quality),
+            self.skinny(w),
             ("flips", w.flip, &self.flip),
             ("folds", w.fold_barrier, &self.fold_barrier),
             ("conformal", w.conformal, &self.conformal),

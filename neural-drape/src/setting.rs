@@ -62,6 +62,15 @@ impl Setting {
         }
     }
 
+    /// A number of things of which there is at least one, and which files count in a byte.
+    pub(crate) fn few(name: &str, value: usize) -> Self {
+        Self {
+            high: f64::from(u8::MAX),
+            expected: "between 1 and 255",
+            ..Self::count(name, value)
+        }
+    }
+
     /// A number of things of which there may be none.
     pub(crate) fn count_or_none(name: &str, value: usize) -> Self {
         Self {

@@ -6,7 +6,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 targets=("$@")
-[ ${#targets[@]} -gt 0 ] || targets=(obj off ply stl gltf glb xyz any landmarks settings warp whole)
+[ ${#targets[@]} -gt 0 ] || targets=(obj off ply stl gltf glb xyz any landmarks settings warp whole command papers)
 out=${OUT:-tests/fuzz}
 mkdir -p "$out/logs"
 cargo fuzz build --fuzz-dir tests/fuzz -s none
@@ -15,6 +15,9 @@ for target in "${targets[@]}"; do
     mkdir -p "$out/corpus/$target" "$out/artifacts/$target"
     dictionary=()
     [ -f "tests/fuzz/dictionaries/$target" ] && dictionary=(-dict="tests/fuzz/dictionaries/$target")
+    quiet=()
+    # The whole command prints.
+    case $target in command | papers) quiet=(-close_fd_mask=3) ;; esac
     seeds=()
     [ -d "tests/fuzz/seeds/$target" ] && seeds=("tests/fuzz/seeds/$target")
     (
@@ -22,7 +25,7 @@ for target in "${targets[@]}"; do
         ulimit -v 1500000
         nice -n 10 "$programs/$target" "$out/corpus/$target" "${seeds[@]}" \
             -artifact_prefix="$out/artifacts/$target/" -max_total_time="${SECONDS_EACH:-600}" -timeout=5 \
-            -rss_limit_mb=1024 -max_len=16384 -print_final_stats=1 "${dictionary[@]}"
+            "${quiet[@]}" -rss_limit_mb=1024 -max_len=16384 -print_final_stats=1 "${dictionary[@]}"
     ) >"$out/logs/$target.log" 2>&1 && ended=well || ended=FOUND
     printf '%s: %s, ' "$target" "$ended"
     grep -aE '^stat::(number_of_executed_units|peak_rss_mb|slowest_unit)|^Done' "$out/logs/$target.log" | tr -s ' \n' ' '

@@ -3,16 +3,17 @@
 
     python3 -m venv venv && venv/bin/pip install trimesh meshio assimp_py scipy
     cargo build -p drape-cli
-    venv/bin/python tests/interop/dialects.py [--drape target/debug/drape] [--keep FOLDER]
+    venv/bin/python tests/interop/dialects.py [--drape target/debug/drape] [--keep FOLDER] [--page docs/formats.md]
 
-Prints a Markdown table: for each file the number of vertices and triangles that each reader finds, `–` where it refuses.
-What is meant is known for each file; a reader that finds something else is marked `wrong`. Exit code 1 where we read a file wrong, or
-refuse one that we mean to read. Not part of the test run.
+Prints a Markdown table, or writes it between the marks of a page: for each file whether each reader finds what is meant
+(`yes`), finds something else (`wrong`), refuses (`–`) or takes its process with it (`crash`). Exit code 1 where we read a
+file wrong, or refuse one that we mean to read. Not part of the test run.
 """
 import argparse
 import base64
 import contextlib
 import gzip
+import importlib.metadata
 import io
 import json
 import logging
@@ -188,6 +189,9 @@ def dialects():
     yield one("quantised.gltf", quantised())
     yield one("instances required.gltf", instanced("extensionsRequired"), REFUSE)
     yield one("corners as floats.gltf", gltf(struct.pack("<3f", 0, 1, 2)).replace("5123", "5126"), REFUSE)
+    # The data is plain: a reader that does not look at what is required reads it.
+    for word, name in (("Draco", "KHR_draco_mesh_compression"), ("meshopt", "EXT_meshopt_compression")):
+        yield one(f"{word} required.gltf", gltf(extensionsUsed=[name], extensionsRequired=[name]), REFUSE)
     yield one("version 1.gltf", json.dumps({"asset": {"version": "1.0"}, "meshes": {"m": {}}}), REFUSE)
 
 
@@ -248,16 +252,28 @@ def verdict_apart(read, path, meant):
     return receiver.recv() if child.exitcode == 0 else "crash"
 
 
+MARKS = "<!-- written by tests/interop/dialects.py -->\n", "<!-- end -->\n"
+
+
+def write_into(page, table):
+    """The page with the table between its marks."""
+    before, rest = page.read_text().split(MARKS[0])
+    _, after = rest.split(MARKS[1])
+    versions = ", ".join(f"{name} {importlib.metadata.version(name)}" for name in ("trimesh", "meshio", "assimp_py"))
+    page.write_text(f"{before}{MARKS[0]}With {versions}:\n\n{table}{MARKS[1]}{after}")
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--drape", default=pathlib.Path(__file__).resolve().parents[2] / "target/debug/drape")
     parser.add_argument("--keep", type=pathlib.Path, help="leave the files in this folder")
+    parser.add_argument("--page", type=pathlib.Path, help="write the table between the marks of this page")
     arguments = parser.parse_args()
     warnings.simplefilter("ignore")
     logging.disable(logging.CRITICAL)
     readers = dict(drape=with_drape(arguments.drape), trimesh=with_trimesh, meshio=with_meshio, assimp=with_assimp)
     n_bad = 0
-    print("| file | " + " | ".join(readers) + " |\n|---|" + "---|" * len(readers))
+    table = "| file | " + " | ".join(readers) + " |\n|---|" + "---|" * len(readers) + "\n"
     with tempfile.TemporaryDirectory() as folder:
         folder = arguments.keep or pathlib.Path(folder)
         folder.mkdir(exist_ok=True)
@@ -267,7 +283,11 @@ def main():
             verdicts = [verdict_apart(read, path, meant) for read in readers.values()]
             is_right = verdicts[0] == ("yes" if ours == READ else "–")
             n_bad += not is_right
-            print(f"| {name} | " + " | ".join(verdicts) + (" | ← |" if not is_right else " |"), flush=True)
+            table += f"| {name} | " + " | ".join(verdicts) + (" | ← |\n" if not is_right else " |\n")
+    if arguments.page:
+        write_into(arguments.page, table)
+    else:
+        print(table, end="")
     sys.exit(n_bad > 0)
 
 

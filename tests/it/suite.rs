@@ -53,7 +53,7 @@ fn a_batch_names_its_outputs_from_a_pattern() {
     std::fs::copy(place.path("landmarks.json"), place.path("target.json")).expect("a copy");
     let line = "batch source.obj target.ply second.ply third.ply -l {target}.json -o done/{source}-{target}.obj --config short.toml";
     let ended = place.drape(line);
-    assert_eq!(ended.code, Some(1));
+    assert_eq!(ended.code, Some(2));
     assert!(place.exists("done/source-target.obj") && place.exists("done/source-second.obj"));
     assert!(!place.exists("done/source-third.obj"));
     assert!(place.exists("drape-batch/index.html"));

@@ -7,7 +7,7 @@ use anyhow::{bail, Context as _};
 use mesh_core::io::write_atomic;
 
 use crate::output::{check_writable, say};
-use crate::suite::{around_marks, Bounds, Page, Row, RunList, Verdict};
+use crate::suite::{Bounds, Marks, Page, Row, RunList, Verdict};
 
 /// What finished runs are held against, and the page they are written to.
 #[derive(Clone, Debug, clap::Args)]
@@ -27,13 +27,24 @@ pub(crate) struct GateArgs {
 }
 
 impl GateArgs {
+    /// The page that a study is written to, and what it says of the program's sources.
+    ///
+    /// # Errors
+    /// Bounds, which studies have none of.
+    pub(crate) fn page_of_study(&self) -> anyhow::Result<Option<(&Path, &str)>> {
+        if self.bounds.is_some() {
+            bail!("--bounds: a study is held against none");
+        }
+        Ok(self.page.as_deref().zip(self.commit.as_deref()))
+    }
+
     /// Refuses what cannot be done, before any run.
     pub(crate) fn check(&self, list: &RunList) -> anyhow::Result<()> {
         if let Some(path) = self.bounds.as_ref().filter(|_| self.tighten) {
             check_writable(path)?;
         }
         if let Some(page) = &self.page {
-            around_marks(&read_page(page)?).with_context(|| page.display().to_string())?;
+            write_between(&Marks::figures(), page, None)?;
             let absent = list.absent();
             if !absent.is_empty() {
                 bail!(
@@ -78,6 +89,21 @@ impl GateArgs {
             _ => Ok(Bounds::default()),
         }
     }
+}
+
+/// Writes `text` between the marks of a page; without it, sees only whether the marks are there.
+///
+/// # Errors
+/// A page that cannot be read or written, or lacks the marks.
+pub(crate) fn write_between(marks: &Marks, path: &Path, text: Option<&str>) -> anyhow::Result<()> {
+    let page = read_page(path)?;
+    let filled = marks.fill(&page, text.unwrap_or_default());
+    let filled = filled.with_context(|| path.display().to_string())?;
+    if text.is_some() {
+        write_atomic(path, filled.as_bytes())?;
+        say(&format!("wrote {}\n", path.display()))?;
+    }
+    Ok(())
 }
 
 fn read_page(path: &Path) -> anyhow::Result<String> {

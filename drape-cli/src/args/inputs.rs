@@ -6,6 +6,7 @@ use mesh_core::io::{MeshFile, Morphs};
 use mesh_core::Positions;
 use mesh_draping::{landmarks, Pair, Seams, Source, Target};
 
+use super::PipeArgs;
 use crate::output::{left_beside, warn};
 
 /// Which vertices of the source are one.
@@ -95,12 +96,16 @@ pub(crate) struct Inputs<'a> {
     pub(crate) target: &'a Path,
     pub(crate) landmarks: Option<&'a Path>,
     pub(crate) seams: Seams,
+    /// Where the command writes, if it does.
+    pub(crate) output: Option<&'a Path>,
+    pub(crate) pipe: PipeArgs,
 }
 
 impl Inputs<'_> {
     pub(crate) fn read(&self) -> anyhow::Result<Pair> {
-        let source = Source::read_with(self.source, self.seams)?;
-        let target = Target::read(self.target)?;
+        let read = |path| self.pipe.read(path, self.output);
+        let source = Source::of_file(read(self.source)?, self.seams)?;
+        let target = Target::of_file(read(self.target)?)?;
         let landmarks = match self.landmarks {
             Some(path) => landmarks::read(path, &source, &target)?,
             None => Vec::new(),

@@ -3,40 +3,41 @@
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use mesh_core::io;
 use mesh_core::Positions;
 use neural_drape::Warp;
 
-use crate::args::MorphArgs;
-use crate::output::{check_distinct, check_mesh, findings, say, warn};
+use crate::args::{say_beside, wrote, MorphArgs, PipeArgs};
+use crate::output::{findings, warn};
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
     /// Map saved by `drape transfer --warp`
     warp: PathBuf,
-    /// Mesh or points in the coordinates of the drape's source: another level of detail, hair, a collision hull
+    /// Mesh or points in the coordinates of the drape's source: another level of detail, hair, a collision hull;
+    /// - for standard input
     mesh: PathBuf,
-    /// File to write: the mesh with its vertices moved
+    /// File to write: the mesh with its vertices moved; - for standard output
     #[arg(short, long, value_name = "OUT")]
     output: PathBuf,
+    #[command(flatten)]
+    pipe: PipeArgs,
     #[command(flatten)]
     morphs: MorphArgs,
 }
 
 pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
-    check_mesh(&args.output)?;
-    check_distinct(&args.output, &[&args.warp, &args.mesh])?;
+    args.pipe.check(&[&args.mesh], Some(&args.output))?;
+    args.pipe
+        .check_output(&args.output, &[&args.warp, &args.mesh])?;
     let warp = Warp::load(&args.warp)?;
-    let mut file = io::read_mesh(&args.mesh)?;
+    let mut file = args.pipe.read(&args.mesh, Some(&args.output))?;
     file.set_morphs(args.morphs.morphs.into());
     warn(&findings(&file));
-    warn(&args.morphs.check_output(&file, &args.output)?);
+    let name = args.pipe.name(&file, &args.output);
+    warn(&args.morphs.check_output(&file, &name)?);
     let moved = Positions::from(warp.apply(&file.soup().positions));
-    file.write(&args.output, &moved)?;
-    say(&format!(
-        "moved {} vertices\nwrote {}\n",
-        moved.len(),
-        args.output.display()
-    ))?;
+    args.pipe.write(&file, &moved, &args.output)?;
+    let told = format!("moved {} vertices\n{}", moved.len(), wrote(&args.output));
+    say_beside(&args.output, &told)?;
     Ok(ExitCode::SUCCESS)
 }

@@ -6,10 +6,11 @@ use std::process::ExitCode;
 use anyhow::{ensure, Context as _};
 use mesh_draping::Preset;
 
-use super::evaluate::finish;
-use crate::args::{MorphArgs, SettingsArgs, WeldArgs};
+use super::evaluate::tell;
+use crate::args::{is_pipe, MorphArgs, SettingsArgs, WeldArgs};
 use crate::output::{check_distinct, check_mesh};
 use crate::suite::{self, stem, Method, Pair, Pool, Task};
+use crate::FAILED;
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
@@ -43,13 +44,23 @@ pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
         args.settings.preset.is_none() || args.settings.config.is_none(),
         "give --preset or --config; a config file may name its preset"
     );
+    ensure!(
+        !args
+            .targets
+            .iter()
+            .chain([&args.source])
+            .any(|path| is_pipe(path)),
+        "a batch reads files; standard input holds one mesh only"
+    );
     args.settings.preset()?;
     for pattern in args.landmarks.iter().chain([&args.output]) {
         check_pattern(pattern)?;
     }
     let tasks = tasks(args)?;
     let rows = suite::run(&tasks, &args.summary, &Pool::new(args.jobs)?)?;
-    finish(&rows, &args.summary)
+    let n_failed = tell(&rows, &args.summary)?;
+    // What was asked for is not all there: bad input, as with one target.
+    Ok(ExitCode::from(if n_failed > 0 { FAILED } else { 0 }))
 }
 
 fn tasks(args: &Args) -> anyhow::Result<Vec<Task>> {
@@ -107,11 +118,12 @@ fn option(name: &str, value: Option<impl clap::ValueEnum>) -> Option<String> {
     Some(format!("--{name}={}", value.get_name()))
 }
 
-/// Refuses a name in braces that stands for nothing.
+/// Refuses a name in braces that stands for nothing, and a brace that is not closed.
 fn check_pattern(pattern: &str) -> anyhow::Result<()> {
-    let opened = pattern.split('{').skip(1);
-    let names = opened.filter_map(|rest| rest.split_once('}').map(|(name, _)| name));
-    for name in names {
+    for opened in pattern.split('{').skip(1) {
+        let (name, _) = opened
+            .split_once('}')
+            .with_context(|| format!("{pattern}: a {{ is not closed"))?;
         ensure!(
             ["source", "target", "folder"].contains(&name),
             "{pattern}: {{{name}}} stands for nothing; there are {{source}}, {{target}} and {{folder}}"
@@ -152,6 +164,8 @@ mod tests {
     #[test]
     fn unknown_names_in_braces_are_refused() {
         assert!(check_pattern("out/{folder}-{target}-{source}.obj").is_ok());
+        let open = check_pattern("out/{target.obj").unwrap_err().to_string();
+        assert!(open.contains("not closed"), "{open}");
         let told = check_pattern("{targets}.obj").unwrap_err().to_string();
         assert!(told.contains("{targets} stands for nothing"), "{told}");
     }

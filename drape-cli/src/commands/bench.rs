@@ -8,7 +8,7 @@ use mesh_core::io::write_atomic;
 use mesh_creatures::{Plan, Variant};
 use mesh_draping::Preset;
 
-use super::evaluate::finish;
+use super::evaluate::tell;
 use crate::creatures::{self, BenchRow, Case, Grid, PairFiles, Table};
 use crate::output::say;
 use crate::suite::{self, Manifest, Pair, Pool, INITIAL};
@@ -93,7 +93,8 @@ pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
         serde_json::to_string_pretty(&table.0)?.as_bytes(),
     )?;
     say(&table.text())?;
-    finish(&rows, &args.output)
+    let n_failed = tell(&rows, &args.output)?;
+    Ok(ExitCode::from(u8::from(n_failed > 0)))
 }
 
 impl Args {

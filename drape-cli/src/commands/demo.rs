@@ -8,7 +8,7 @@ use mesh_draping::mesh_metrics::Report;
 use mesh_draping::Seams;
 
 use super::transfer;
-use crate::args::{MorphArgs, Morphing, PartArgs, SettingsArgs, ViewArgs, WeldArgs};
+use crate::args::{MorphArgs, Morphing, PartArgs, PipeArgs, SettingsArgs, ViewArgs, WeldArgs};
 use crate::creatures;
 use crate::output::say;
 use crate::profile::ProfileArgs;
@@ -31,6 +31,7 @@ pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
         target: files.target,
         landmarks: files.landmarks,
         output: name("draped.obj"),
+        pipe: PipeArgs::default(),
         weld: WeldArgs { weld: Seams::EXACT },
         morphs: MorphArgs {
             morphs: Morphing::Keep,

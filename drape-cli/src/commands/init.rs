@@ -3,26 +3,31 @@
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use mesh_draping::initial_deformation;
+use mesh_core::Positions;
+use mesh_draping::{initial_deformation, Pair};
 use mesh_render::{Gallery, Image, View};
 
-use crate::args::{read_truth, InitialArg, Inputs, MorphArgs, ViewArgs, WeldArgs};
-use crate::output::{check_distinct, check_mesh, check_writable, say, warn};
+use crate::args::{
+    read_truth, say_beside, wrote, InitialArg, Inputs, MorphArgs, PipeArgs, ViewArgs, WeldArgs,
+};
+use crate::output::{check_writable, warn};
 use crate::usage::Stopwatch;
 use crate::words;
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
-    /// Mesh to deform
+    /// Mesh to deform; - for standard input
     source: PathBuf,
-    /// Mesh or point cloud to bring it to
+    /// Mesh or point cloud to bring it to; - for standard input
     target: PathBuf,
     /// Places that belong together, as JSON
     #[arg(short, long, value_name = "FILE")]
     landmarks: Option<PathBuf>,
-    /// File to write: the source with its vertices moved
+    /// File to write: the source with its vertices moved; - for standard output
     #[arg(short, long, value_name = "OUT")]
     output: PathBuf,
+    #[command(flatten)]
+    pipe: PipeArgs,
     #[command(flatten)]
     weld: WeldArgs,
     #[command(flatten)]
@@ -48,16 +53,14 @@ const PICTURE_SIZE: usize = 480;
 
 pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let watch = Stopwatch::start();
-    check_mesh(&args.output)?;
-    check_distinct(&args.output, &[&args.source, &args.target])?;
-    if let Some(path) = &args.render {
-        check_writable(path)?;
-    }
+    check_outputs(args)?;
     let inputs = Inputs {
         source: &args.source,
         target: &args.target,
         landmarks: args.landmarks.as_deref(),
         seams: args.weld.weld,
+        output: Some(&args.output),
+        pipe: args.pipe,
     };
     let mut pair = inputs.read()?;
     pair.source = pair.source.with_morphs(args.morphs.morphs.into());
@@ -67,30 +70,20 @@ pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
         .transpose()?;
     let mut warnings = words::about_inputs(&pair);
     if let Some(file) = pair.source.file() {
-        warnings.extend(args.morphs.check_output(file, &args.output)?);
+        warnings.extend(
+            args.morphs
+                .check_output(file, &args.pipe.name(file, &args.output))?,
+        );
     }
     let initial = initial_deformation(&pair, args.initial.into())?;
     warnings.extend(words::notes(&initial.notes));
     warn(&warnings);
     let positions = initial.positions;
     let report = pair.judge(&positions, truth.as_ref())?;
-    pair.source.write(&args.output, &positions)?;
+    args.pipe
+        .write_source(&pair.source, &positions, &args.output)?;
     if let Some(path) = &args.render {
-        let gallery = Gallery::new(&pair, &positions, args.view.up, PICTURE_SIZE)?;
-        let row = |view| {
-            Image::row(&[
-                gallery.source(view),
-                gallery.target(view),
-                gallery.initial(&positions, view),
-            ])
-        };
-        let rows: Vec<Image> = args
-            .view
-            .views_or(&[View::FRONT_QUARTER])
-            .into_iter()
-            .map(row)
-            .collect();
-        Image::column(&rows).save(path)?;
+        picture(args, &pair, &positions)?.save(path)?;
     }
     if args.json {
         let usage = watch.read().figures();
@@ -101,9 +94,36 @@ pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
             .collect::<std::collections::BTreeMap<_, _>>();
         let json =
             serde_json::json!({ "figures": figures, "report": report, "warnings": warnings });
-        say(&format!("{json:#}\n"))?;
+        say_beside(&args.output, &format!("{json:#}\n"))?;
     } else {
-        say(&format!("{report}\nwrote {}\n", args.output.display()))?;
+        let told = format!("{report}\n{}", wrote(&args.output));
+        say_beside(&args.output, &told)?;
     }
     Ok(ExitCode::SUCCESS)
+}
+
+/// Source, target and result, a row for each view.
+fn picture(args: &Args, pair: &Pair, positions: &Positions) -> anyhow::Result<Image> {
+    let gallery = Gallery::new(pair, positions, args.view.up, PICTURE_SIZE)?;
+    let row = |view| {
+        Image::row(&[
+            gallery.source(view),
+            gallery.target(view),
+            gallery.initial(positions, view),
+        ])
+    };
+    let views = args.view.views_or(&[View::FRONT_QUARTER]);
+    let rows: Vec<Image> = views.into_iter().map(row).collect();
+    Ok(Image::column(&rows))
+}
+
+fn check_outputs(args: &Args) -> anyhow::Result<()> {
+    args.pipe
+        .check(&[&args.source, &args.target], Some(&args.output))?;
+    args.pipe
+        .check_output(&args.output, &[&args.source, &args.target])?;
+    if let Some(path) = &args.render {
+        check_writable(path)?;
+    }
+    Ok(())
 }

@@ -4,19 +4,21 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use anyhow::Context as _;
-use mesh_core::io::{self, write_atomic};
+use mesh_core::io::write_atomic;
 use mesh_draping::parts::inner_surfaces;
 use mesh_draping::{Seams, Source, Target, Treatment};
 use mesh_render::{color, draw, Axes, Image, Look, Model, Shot, Upright, View};
 
-use crate::args::ViewArgs;
+use crate::args::{PipeArgs, ViewArgs};
 use crate::inspection::Inspection;
 use crate::output::{check_writable, findings, say, warn};
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
-    /// Mesh or point cloud
+    /// Mesh or point cloud; - for standard input
     file: PathBuf,
+    #[command(flatten)]
+    pipe: PipeArgs,
     /// Print JSON
     #[arg(long)]
     json: bool,
@@ -36,6 +38,7 @@ const NO_FILE: &str = "-";
 const PICTURE_SIZE: usize = 560;
 
 pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
+    args.pipe.check(&[&args.file], None)?;
     let is_file = |path: &&PathBuf| path.as_os_str() != NO_FILE;
     for path in [&args.render, &args.hidden]
         .into_iter()
@@ -44,7 +47,7 @@ pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
     {
         check_writable(path)?;
     }
-    let file = io::read_mesh(&args.file)?;
+    let file = args.pipe.read(&args.file, None)?;
     warn(&findings(&file));
     let inspection = Inspection::of(&file).with_context(|| args.file.display().to_string())?;
     let inner = match &args.hidden {

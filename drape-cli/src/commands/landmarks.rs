@@ -11,7 +11,7 @@ use mesh_core::Landmark;
 use mesh_draping::landmarks::{self, leave_one_out_residuals, Finding, Form, Label};
 use mesh_draping::{Pair, Seams};
 
-use crate::args::Inputs;
+use crate::args::{Inputs, PipeArgs};
 use crate::output::{check_distinct, check_writable, say, warn};
 
 #[derive(Debug, clap::Args)]
@@ -100,6 +100,8 @@ impl Files {
             target: &self.target,
             landmarks: Some(&self.landmarks),
             seams: Seams::EXACT,
+            output: None,
+            pipe: PipeArgs::default(),
         };
         inputs.read()
     }

@@ -8,17 +8,17 @@ use mesh_draping::mesh_metrics::Report;
 use mesh_draping::Pair;
 use mesh_render::{Gallery, Image, View, DISTANCE_AT_TOP};
 
-use crate::args::{read_truth, Inputs, ViewArgs, WeldArgs};
+use crate::args::{read_truth, Inputs, PipeArgs, ViewArgs, WeldArgs};
 use crate::output::{check_writable, say};
 use crate::requirement::Requirements;
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
-    /// Mesh before the drape
+    /// Mesh before the drape; - for standard input
     source: PathBuf,
     /// Mesh after it, with the same vertices in the same order
     result: PathBuf,
-    /// Mesh or point cloud it should lie on
+    /// Mesh or point cloud it should lie on; - for standard input
     target: PathBuf,
     /// Landmarks that the result should meet
     #[arg(short, long, value_name = "FILE")]
@@ -28,6 +28,8 @@ pub(crate) struct Args {
     truth: Option<PathBuf>,
     #[command(flatten)]
     weld: WeldArgs,
+    #[command(flatten)]
+    pipe: PipeArgs,
     /// Print JSON
     #[arg(long)]
     json: bool,
@@ -45,6 +47,7 @@ pub(crate) struct Args {
 const PICTURE_SIZE: usize = 480;
 
 pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
+    args.pipe.check(&[&args.source, &args.target], None)?;
     if let Some(path) = &args.render {
         check_writable(path)?;
     }
@@ -53,6 +56,8 @@ pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
         target: &args.target,
         landmarks: args.landmarks.as_deref(),
         seams: args.weld.weld,
+        output: None,
+        pipe: args.pipe,
     };
     let pair = inputs.read()?;
     let draped = read_truth(&args.result, &pair.source)?;

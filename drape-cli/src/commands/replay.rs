@@ -3,25 +3,28 @@
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use crate::output::{check_distinct, check_mesh, check_writable, say};
+use crate::args::{is_pipe, say_beside, wrote, PipeArgs};
+use crate::output::{check_distinct, check_writable};
 use crate::progress::Progress;
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
     /// Session file of the studio
     session: PathBuf,
-    /// File to write: the source with its vertices moved
+    /// File to write: the source with its vertices moved; - for standard output
     #[arg(short, long, value_name = "OUT")]
     output: PathBuf,
+    #[command(flatten)]
+    pipe: PipeArgs,
     /// Save the map, for `drape apply`
     #[arg(long, value_name = "WARP")]
     warp: Option<PathBuf>,
 }
 
 pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
-    check_mesh(&args.output)?;
-    let outputs = [Some(&args.output), args.warp.as_ref()];
-    for path in outputs.into_iter().flatten() {
+    args.pipe.check(&[], Some(&args.output))?;
+    args.pipe.check_output(&args.output, &[&args.session])?;
+    if let Some(path) = &args.warp {
         check_writable(path)?;
         check_distinct(path, &[&args.session])?;
     }
@@ -40,15 +43,18 @@ pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
         pair.target.path(),
     ];
     let inputs: Vec<&Path> = inputs.into_iter().flatten().collect();
+    let output = Some(&args.output).filter(|path| !is_pipe(path));
+    let outputs = [output, args.warp.as_ref()];
     for path in outputs.into_iter().flatten() {
         check_distinct(path, &inputs)?;
     }
-    pair.source.write(&args.output, &replayed.draped)?;
+    args.pipe
+        .write_source(&pair.source, &replayed.draped, &args.output)?;
     if let Some(path) = &args.warp {
         replayed.warp()?.save(path)?;
     }
     for path in outputs.into_iter().flatten() {
-        say(&format!("wrote {}\n", path.display()))?;
+        say_beside(&args.output, &wrote(path))?;
     }
     Ok(ExitCode::SUCCESS)
 }

@@ -10,8 +10,11 @@ use mesh_draping::mesh_metrics::Report;
 use mesh_draping::{Outcome, Stages, Transfer};
 use mesh_render::{Gallery, Image, Page, View, DISTANCE_AT_TOP};
 
-use crate::args::{read_truth, Inputs, MorphArgs, PartArgs, SettingsArgs, ViewArgs, WeldArgs};
-use crate::output::{check_distinct, check_mesh, check_writable, say, warn};
+use crate::args::{
+    read_truth, say_beside, wrote, Inputs, MorphArgs, PartArgs, PipeArgs, SettingsArgs, ViewArgs,
+    WeldArgs,
+};
+use crate::output::{check_distinct, check_writable, warn};
 use crate::profile::{self, ProfileArgs};
 use crate::progress::Progress;
 use crate::requirement::Requirements;
@@ -20,16 +23,18 @@ use crate::words;
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
-    /// Mesh to deform: its faces, texture coordinates, groups and order survive
+    /// Mesh to deform: its faces, texture coordinates, groups and order survive; - for standard input
     pub(super) source: PathBuf,
-    /// Mesh or point cloud to drape it over
+    /// Mesh or point cloud to drape it over; - for standard input
     pub(super) target: PathBuf,
     /// Places that belong together, as JSON
     #[arg(short, long, value_name = "FILE")]
     pub(super) landmarks: Option<PathBuf>,
-    /// File to write: the source with its vertices moved
+    /// File to write: the source with its vertices moved; - for standard output
     #[arg(short, long, value_name = "OUT")]
     pub(super) output: PathBuf,
+    #[command(flatten)]
+    pub(super) pipe: PipeArgs,
     #[command(flatten)]
     pub(super) weld: WeldArgs,
     #[command(flatten)]
@@ -86,6 +91,8 @@ pub(super) fn drape_files(args: &Args) -> anyhow::Result<Done<'_>> {
         target: &args.target,
         landmarks: args.landmarks.as_deref(),
         seams: args.weld.weld,
+        output: Some(&args.output),
+        pipe: args.pipe,
     };
     let mut pair = stages.time("reading", || inputs.read())?;
     pair.source = pair.source.with_morphs(args.morphs.morphs.into());
@@ -95,7 +102,10 @@ pub(super) fn drape_files(args: &Args) -> anyhow::Result<Done<'_>> {
         .transpose()?;
     let mut warnings = words::about_inputs(&pair);
     if let Some(file) = pair.source.file() {
-        warnings.extend(args.morphs.check_output(file, &args.output)?);
+        warnings.extend(
+            args.morphs
+                .check_output(file, &args.pipe.name(file, &args.output))?,
+        );
     }
     let parts = args.parts.resolve(&pair)?;
     warnings.extend(words::notes(&parts.notes));
@@ -137,7 +147,8 @@ fn drape(transfer: Transfer) -> anyhow::Result<Outcome> {
 }
 
 fn check_outputs(args: &Args) -> anyhow::Result<()> {
-    check_mesh(&args.output)?;
+    args.pipe
+        .check(&[&args.source, &args.target], Some(&args.output))?;
     let inputs: Vec<&Path> = [
         Some(&args.source),
         Some(&args.target),
@@ -148,12 +159,8 @@ fn check_outputs(args: &Args) -> anyhow::Result<()> {
     .flatten()
     .map(PathBuf::as_path)
     .collect();
-    let outputs = [
-        Some(&args.output),
-        args.report.as_ref(),
-        args.render.as_ref(),
-        args.warp.as_ref(),
-    ];
+    args.pipe.check_output(&args.output, &inputs)?;
+    let outputs = [&args.report, &args.render, &args.warp];
     for path in outputs.into_iter().flatten() {
         check_writable(path)?;
         check_distinct(path, &inputs)?;
@@ -175,7 +182,9 @@ pub(super) struct Done<'a> {
 impl Done<'_> {
     fn write(&self) -> anyhow::Result<()> {
         let Self { args, outcome, .. } = self;
-        outcome.write(&args.output)?;
+        let source = &outcome.pair.source;
+        args.pipe
+            .write_source(source, &outcome.draped, &args.output)?;
         if let Some(path) = &args.warp {
             outcome.warp()?.save(path)?;
         }
@@ -193,9 +202,10 @@ impl Done<'_> {
         Ok(Gallery::new(pair, initial, self.args.view.up, size)?)
     }
 
-    /// All figures by name: of the result, of time and memory.
+    /// All figures by name: of the result, of what was left out, of time and memory.
     fn figures(&self) -> Vec<(&'static str, f64)> {
         let mut figures = self.outcome.report.figures();
+        figures.push(("left_out", self.outcome.left_out()));
         figures.extend(self.usage.figures());
         figures
     }
@@ -256,13 +266,17 @@ impl Done<'_> {
             if is_profiled {
                 json["profile"] = profile::json(stages);
             }
-            return Ok(say(&format!("{json:#}\n"))?);
+            return Ok(self.say(&format!("{json:#}\n"))?);
         }
-        say(&self.text())?;
+        self.say(&self.text())?;
         if is_profiled {
-            say(&profile::table(stages, &watch.read()))?;
+            self.say(&profile::table(stages, &watch.read()))?;
         }
         Ok(())
+    }
+
+    fn say(&self, text: &str) -> std::io::Result<()> {
+        say_beside(&self.args.output, text)
     }
 
     fn text(&self) -> String {
@@ -273,8 +287,8 @@ impl Done<'_> {
             args.render.as_ref(),
             args.report.as_ref(),
         ];
-        let wrote = |path: &PathBuf| format!("wrote {}\n", path.display());
-        let written: String = outputs.into_iter().flatten().map(wrote).collect();
+        let written = outputs.into_iter().flatten().map(|path| wrote(path));
+        let written: String = written.collect();
         let seams = words::seams(&run.pair.source);
         let seams = seams.map_or_else(String::new, |words| format!("{words}\n"));
         format!(

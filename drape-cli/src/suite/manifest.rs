@@ -23,7 +23,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{anyhow, ensure, Context as _};
 use mesh_core::io::Format;
-use mesh_draping::Preset;
+use mesh_draping::{plain_words, Preset};
 use serde::Deserialize;
 
 use super::{Method, Pair, Task, INITIAL};
@@ -116,6 +116,15 @@ impl Manifest {
         })
     }
 
+    /// The same pairs with these settings and seeds.
+    pub(super) fn with_methods(self, methods: &[Method], seeds: &[u64]) -> Self {
+        Self {
+            methods: methods.to_vec(),
+            seeds: seeds.to_vec(),
+            ..self
+        }
+    }
+
     pub(super) fn parse(text: &str, folder: &Path, data: Option<PathBuf>) -> anyhow::Result<Self> {
         let file: File = toml::from_str(text).map_err(|error| {
             let before = error
@@ -124,7 +133,7 @@ impl Manifest {
             anyhow!(
                 "line {}: {}",
                 before.lines().count().max(1),
-                error.message().replace('\n', ", ")
+                plain_words(&error.message().replace('\n', ", "))
             )
         })?;
         let root = match &file.data {

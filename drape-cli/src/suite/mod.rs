@@ -17,7 +17,7 @@ use mesh_core::io::write_atomic;
 
 pub(crate) use bounds::{Bounds, Verdict};
 pub(crate) use manifest::Manifest;
-pub(crate) use page::{around_marks, Page};
+pub(crate) use page::{origin, Marks, Page};
 pub(crate) use row::Row;
 pub(crate) use run_list::RunList;
 pub(crate) use runner::Pool;

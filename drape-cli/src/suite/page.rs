@@ -8,11 +8,42 @@ use super::bounds::{figure, MEAN_COVERED};
 use super::row::Row;
 use super::run_list::RunList;
 
-/// The line before the figures.
-const BEGIN: &str =
-    "<!-- figures: written by `drape evaluate --page`; what is written by hand stands around them -->";
-/// The line after them.
-const END: &str = "<!-- end of figures -->";
+/// The lines of a page between which a command writes.
+#[derive(Clone, Debug)]
+pub(crate) struct Marks {
+    begin: String,
+    end: String,
+}
+
+impl Marks {
+    /// Those of the figures of a list of runs.
+    pub(crate) fn figures() -> Self {
+        Self {
+            begin: "<!-- figures: written by `drape evaluate --page`; what is written by hand stands around them -->".to_owned(),
+            end: "<!-- end of figures -->".to_owned(),
+        }
+    }
+
+    /// Those of a study.
+    pub(crate) fn study(name: &str) -> Self {
+        Self {
+            begin: format!("<!-- study: written by `drape evaluate --study {name} --page` -->"),
+            end: format!("<!-- end of study {name} -->"),
+        }
+    }
+
+    /// `page` with `text` in place of what stands between the marks.
+    ///
+    /// # Errors
+    /// A page without them.
+    pub(crate) fn fill(&self, page: &str, text: &str) -> anyhow::Result<String> {
+        let Self { begin, end } = self;
+        let lacks = |mark: &str| format!("no line '{mark}'");
+        let (before, rest) = page.split_once(begin).with_context(|| lacks(begin))?;
+        let (_, after) = rest.split_once(end).with_context(|| lacks(end))?;
+        Ok(format!("{before}{begin}\n\n{text}\n{end}{after}"))
+    }
+}
 
 /// A column: figure, heading, factor, decimals.
 type Column = (&'static str, &'static str, f64, usize);
@@ -53,11 +84,7 @@ impl Page<'_> {
         if let Some(row) = self.rows.iter().find(|row| row.error.is_some()) {
             bail!("{} has no result, so that no page is written", row.pair);
         }
-        let [before, after] = around_marks(text)?;
-        Ok(format!(
-            "{before}{BEGIN}\n\n{}\n{END}{after}",
-            self.figures()
-        ))
+        Marks::figures().fill(text, &self.figures())
     }
 
     fn figures(&self) -> String {
@@ -81,19 +108,11 @@ impl Page<'_> {
         text
     }
 
-    /// When, of what and where the figures were measured.
     fn origin(&self) -> String {
-        let newest = self.rows.iter().map(|row| row.finished).max().unwrap_or(0);
-        let [year, month, day] = date(newest);
-        let processor = processor().map_or_else(String::new, |name| format!(", {name}"));
-        format!(
-            "{year}-{month:02}-{day:02}, version {}, commit {}{processor}: {} runs. Lengths are in longest sides of the target's\n\
-             box; a run is judged against the true mesh where its target is a defective variant of it. CPU-seconds are those of the\n\
-             whole command, reading, judging and writing included.\n",
-            env!("CARGO_PKG_VERSION"),
-            self.commit,
-            self.rows.len()
-        )
+        origin(self.rows, self.commit)
+            + " Lengths are in longest sides of the target's\n\
+               box; a run is judged against the true mesh where its target is a defective variant of it. CPU-seconds are those of the\n\
+               whole command, reading, judging and writing included.\n"
     }
 
     fn table(&self, rows: &[&Row]) -> String {
@@ -135,15 +154,13 @@ impl Page<'_> {
     }
 }
 
-/// What stands before and after the marks of a page.
-///
-/// # Errors
-/// A text without them.
-pub(crate) fn around_marks(text: &str) -> anyhow::Result<[&str; 2]> {
-    let lacks = |mark: &str| format!("no line '{mark}'");
-    let (before, rest) = text.split_once(BEGIN).with_context(|| lacks(BEGIN))?;
-    let (_, after) = rest.split_once(END).with_context(|| lacks(END))?;
-    Ok([before, after])
+/// When, of what and where the figures of `rows` were measured, and how many runs they are.
+pub(crate) fn origin(rows: &[Row], commit: &str) -> String {
+    let newest = rows.iter().map(|row| row.finished).max().unwrap_or(0);
+    let [year, month, day] = date(newest);
+    let processor = processor().map_or_else(String::new, |name| format!(", {name}"));
+    let (version, n) = (env!("CARGO_PKG_VERSION"), rows.len());
+    format!("{year}-{month:02}-{day:02}, version {version}, commit {commit}{processor}: {n} runs.")
 }
 
 fn cell(value: Option<f64>, (_, _, factor, decimals): Column) -> String {
@@ -194,6 +211,11 @@ mod tests {
     const MANIFEST: &str = "[[pair]]\nname = 'horse'\nsource = 's.obj'\ntarget = 't.obj'\nsection = 'Animals'\n\
         [[pair]]\nname = 'mask'\nsource = 's.obj'\ntarget = 't.obj'\nsection = 'Masks'\npartial = true\n";
 
+    fn page(text: &str) -> String {
+        let Marks { begin, end } = Marks::figures();
+        format!("# Mine\n{begin}\n{text}\n{end}\nmy words\n")
+    }
+
     fn written(rows: &[Row], text: &str) -> anyhow::Result<String> {
         let manifest = Manifest::parse(MANIFEST, Path::new(""), None)?;
         let list = RunList::new(vec![manifest])?;
@@ -213,8 +235,7 @@ mod tests {
         mask.figures
             .insert("mean_l2_target_to_result".to_owned(), 0.002);
         let rows = [row("horse", "standard", Some(0.98765)), mask];
-        let text = format!("# Mine\n{BEGIN}\nstale\n{END}\nmy words\n");
-        let page = written(&rows, &text).unwrap();
+        let page = written(&rows, &page("stale")).unwrap();
         assert!(
             page.starts_with("# Mine\n")
                 && page.ends_with("\nmy words\n")
@@ -230,8 +251,7 @@ mod tests {
     #[test]
     fn no_page_is_written_without_marks_or_with_a_run_that_failed() {
         assert!(written(&[], "# Mine\n").is_err());
-        let text = format!("{BEGIN}\n{END}\n");
-        assert!(written(&[row("horse", "standard", None)], &text).is_err());
+        assert!(written(&[row("horse", "standard", None)], &page("")).is_err());
     }
 
     #[test]
@@ -240,7 +260,7 @@ mod tests {
             row("horse", "standard", Some(0.5)),
             row("horse", "quick", Some(0.7)),
         ];
-        let page = written(&rows, &format!("{BEGIN}\n{END}")).unwrap();
+        let page = written(&rows, &page("")).unwrap();
         assert!(
             page.contains("| horse, quick, 0 | 0.7000 |") && page.contains("| mean | 0.6000 |")
         );

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::bail;
 
-use super::{Manifest, Task};
+use super::{Manifest, Method, Task};
 
 /// Manifests one after the other, no two pairs of one name.
 #[derive(Debug)]
@@ -40,6 +40,17 @@ impl RunList {
         manifests.push(manifest);
         *self = Self::new(manifests)?;
         Ok(())
+    }
+
+    /// The same pairs with these settings and seeds in place of those that the manifests name.
+    pub(crate) fn with_methods(self, methods: &[Method], seeds: &[u64]) -> Self {
+        let manifests = self.0.into_iter();
+        Self(manifests.map(|m| m.with_methods(methods, seeds)).collect())
+    }
+
+    /// The names of the pairs that are there, in order.
+    pub(crate) fn names(&self) -> Vec<&str> {
+        self.0.iter().flat_map(Manifest::names).collect()
     }
 
     /// The runs, manifest by manifest and pair by pair; their files go into a folder for each pair.

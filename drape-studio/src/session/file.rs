@@ -1,16 +1,19 @@
-//! Session files: JSON, every number exact.
+//! Session files: JSON, every number exact, with a check sum.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use anyhow::{ensure, Context as _};
+use anyhow::{anyhow, ensure, Context as _};
 use mesh_core::io::write_atomic;
+use mesh_draping::plain_words;
 use serde::{Deserialize, Serialize};
 
 use super::mark::Mark;
 use super::{Change, Session};
 
 pub(super) const VERSION: u32 = 1;
+/// The key of the check sum, beside what is in the session.
+const CHECK_SUM: &str = "check_sum";
 /// No drape gets more iterations at once.
 const MAX_MORE_ITERATIONS: usize = 1_000_000_000;
 
@@ -61,15 +64,21 @@ pub(crate) fn read(path: &Path) -> anyhow::Result<Session> {
 impl Session {
     /// Reads what [`Self::to_json`] wrote; paths that are not there are left to whoever opens them.
     pub(crate) fn of_json(text: &str) -> anyhow::Result<Self> {
-        let version = serde_json::from_str::<serde_json::Value>(text)
-            .context("is not a session file")?
-            .get("version")
-            .and_then(serde_json::Value::as_u64);
+        let mut value: serde_json::Value =
+            serde_json::from_str(text).context("is not a session file")?;
+        let version = value.get("version").and_then(serde_json::Value::as_u64);
         ensure!(
             version == Some(u64::from(VERSION)),
             "is not a session file of version {VERSION}"
         );
-        let session: Self = serde_json::from_str(text).context("is not a session file")?;
+        let stated = value.as_object_mut().and_then(|all| all.remove(CHECK_SUM));
+        ensure!(
+            stated == Some(check_sum(&value)?.into()),
+            "is damaged: its content is not that of its check sum"
+        );
+        let session: Self = serde_json::from_value(value).map_err(|error| {
+            anyhow!("is not a session file: {}", plain_words(&error.to_string()))
+        })?;
         session.check()?;
         Ok(session)
     }
@@ -101,7 +110,12 @@ impl Session {
 
     /// The session as a file.
     pub(crate) fn to_json(&self) -> anyhow::Result<String> {
-        Ok(serde_json::to_string(self)? + "\n")
+        let mut value = serde_json::to_value(self)?;
+        let sum = check_sum(&value)?;
+        if let Some(all) = value.as_object_mut() {
+            all.insert(CHECK_SUM.to_owned(), sum.into());
+        }
+        Ok(serde_json::to_string(&value)? + "\n")
     }
 
     /// Writes the session, all or nothing.
@@ -127,6 +141,12 @@ impl Session {
         }
         Ok(())
     }
+}
+
+/// FNV-1a hash of what is in a session, keys in alphabetical order and without blanks, hexadecimal: the layout of its file
+/// does not matter.
+fn check_sum(session: &serde_json::Value) -> anyhow::Result<String> {
+    Ok(format!("{:016x}", fnv1a(&serde_json::to_vec(session)?)))
 }
 
 fn is_finite(mark: &Mark) -> bool {
@@ -200,6 +220,21 @@ mod tests {
         assert_eq!(run.last_parts(), &before.document.parts);
     }
 
+    /// A session file that was changed, with the check sum of what it holds now.
+    fn summed(text: &str) -> String {
+        let Ok(mut value) = serde_json::from_str::<serde_json::Value>(text) else {
+            return text.to_owned();
+        };
+        if let Some(all) = value.as_object_mut() {
+            all.remove(CHECK_SUM);
+        }
+        let sum = check_sum(&value).unwrap();
+        if let Some(all) = value.as_object_mut() {
+            all.insert(CHECK_SUM.to_owned(), sum.into());
+        }
+        value.to_string()
+    }
+
     #[test]
     fn other_files_are_refused() {
         let good = session().to_json().unwrap();
@@ -213,8 +248,13 @@ mod tests {
             &good.replace("\"mirror\":null", "\"mirror\":[0,3]"),
             &good[..good.len() / 2],
         ] {
-            assert!(Session::of_json(bad).is_err(), "{bad}");
+            let told = Session::of_json(&summed(bad)).unwrap_err().to_string();
+            assert!(!told.contains("damaged"), "{bad}: {told}");
         }
+        assert!(Session::of_json(&summed(&good)).is_ok());
+        let changed = good.replace("\"extended\":500", "\"extended\":501");
+        let told = Session::of_json(&changed).unwrap_err().to_string();
+        assert!(told.contains("damaged"), "{told}");
         assert!(session().check_places(3).is_err());
         assert!(session().check_places(4).is_ok());
     }

@@ -1,5 +1,6 @@
 //! A file in memory: what it holds, and the way back.
 
+use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -63,6 +64,17 @@ pub fn read_mesh(path: impl AsRef<Path>) -> Result<MeshFile, ReadError> {
     let path = path.as_ref();
     let bytes = input::read(path).map_err(|fault| fault.of(path))?;
     MeshFile::from_bytes(path, bytes)
+}
+
+/// Reads a mesh from what is no file, at most 4 GiB of it. `name` is how messages call it; its extension tells the format
+/// where the content does not.
+///
+/// # Errors
+/// As [`read_mesh`].
+pub fn read_stream(name: impl AsRef<Path>, from: impl Read) -> Result<MeshFile, ReadError> {
+    let name = name.as_ref();
+    let bytes = input::read_stream(from).map_err(|fault| fault.of(name))?;
+    MeshFile::from_bytes(name, bytes)
 }
 
 /// Reads the points and faces of a file, and nothing else.

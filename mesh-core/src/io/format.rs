@@ -42,6 +42,11 @@ impl Format {
         self.codec().name
     }
 
+    /// The usual extension of its files, without a point.
+    pub fn extension(self) -> &'static str {
+        self.codec().extensions[0]
+    }
+
     /// The format that the extension of `path` names, a final `.gz` aside.
     pub fn of_extension(path: &Path) -> Option<Self> {
         let inner = gzip::inner_path(path);

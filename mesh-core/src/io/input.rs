@@ -10,6 +10,11 @@ use super::fault::Fault;
 /// What is read of a pipe at most, in bytes: a file's size is known before, that of a pipe is not.
 const MOST_OF_A_PIPE: u64 = 4 << 30;
 
+/// All bytes that `from` gives, up to the limit of a pipe.
+pub(super) fn read_stream(from: impl Read) -> Result<Vec<u8>, Fault> {
+    at_most(from, MOST_OF_A_PIPE)
+}
+
 /// All bytes of the file or pipe called `path`.
 pub(super) fn read(path: &Path) -> Result<Vec<u8>, Fault> {
     let failed = |e| Fault::whole(ReadProblem::Io(e));
@@ -20,7 +25,7 @@ pub(super) fn read(path: &Path) -> Result<Vec<u8>, Fault> {
     if is_device(kind) {
         return Err(Fault::whole(ReadProblem::Device));
     }
-    at_most(File::open(path).map_err(failed)?, MOST_OF_A_PIPE)
+    read_stream(File::open(path).map_err(failed)?)
 }
 
 fn at_most(from: impl Read, most: u64) -> Result<Vec<u8>, Fault> {

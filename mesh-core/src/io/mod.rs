@@ -7,7 +7,8 @@
 //! | write a source with new positions | [`MeshFile::write`] |
 //! | carry, keep or drop its morph targets | [`MeshFile::set_morphs`] |
 //! | write a shape made in code | [`write_soup`] |
-//! | write any file all or nothing | [`write_atomic`] |
+//! | write any file all or nothing; know before whether that will do | [`write_atomic`], [`check_writable`] |
+//! | read a mesh from a pipe | [`read_stream`] |
 //!
 //! A [`MeshFile`] keeps the bytes of its file. To write it, those bytes are read once more and copied, with new numbers
 //! where positions and normals are: order, arity, texture coordinates, groups, materials, comments, line ends and
@@ -52,8 +53,8 @@ mod xyz;
 
 pub use contents::{Contents, Morphs, NamedFaces};
 pub use error::{Place, ReadError, ReadProblem, WriteError};
-pub use file::{read_mesh, read_points, read_soup, MeshFile, PointSet};
+pub use file::{read_mesh, read_points, read_soup, read_stream, MeshFile, PointSet};
 pub use finding::Finding;
 pub use format::Format;
 pub use printable::printable;
-pub use save::{write_atomic, write_soup};
+pub use save::{check_writable, write_atomic, write_soup};

@@ -1,6 +1,6 @@
 //! Files written all or nothing.
 
-use std::fs::{self, OpenOptions};
+use std::fs::{self, File, OpenOptions, Permissions};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -74,32 +74,56 @@ pub(super) fn check_finite(path: &Path, positions: &[crate::Point3]) -> Result<(
 
 /// Writes `bytes` as the file `path`, all or nothing: into a new file beside it, which then takes its name.
 ///
-/// What is there already and is no plain file (a pipe, a terminal) is written to directly.
+/// A file that is replaced hands its permissions on, and one that a link leads to is replaced where it lies. What is there
+/// already and is no plain file (a pipe, a terminal) is written to directly.
 ///
 /// # Errors
 /// A file that cannot be written; then nothing is left behind, and a file of that name is as it was.
 pub fn write_atomic(path: impl AsRef<Path>, bytes: &[u8]) -> Result<(), WriteError> {
     let path = path.as_ref();
     let written = match fs::metadata(path) {
-        Ok(there) if !there.is_file() && !there.is_dir() => fs::write(path, bytes),
-        _ => replace(path, bytes),
+        Ok(there) if there.is_file() => replace(path, bytes, Some(there.permissions())),
+        Ok(there) if !there.is_dir() => fs::write(path, bytes),
+        _ => replace(path, bytes, None),
     };
-    written.map_err(|source| WriteError::Io {
-        path: path.to_owned(),
-        source,
-    })
+    written.map_err(|source| refused(path, source))
 }
 
-fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
-    let beside = name_beside(path)?;
-    let mut file = OpenOptions::new()
-        .write(true)
-        .create_new(true)
-        .open(&beside)?;
+/// Whether [`write_atomic`] could write `path` now: to know before a long run. Nothing is changed.
+///
+/// # Errors
+/// A folder that is not there or takes no new file, a name that is too long, or a file that may not be changed.
+pub fn check_writable(path: impl AsRef<Path>) -> Result<(), WriteError> {
+    let path = path.as_ref();
+    let checked = match fs::metadata(path) {
+        Ok(there) if there.is_file() => OpenOptions::new()
+            .write(true)
+            .open(path)
+            .and_then(|_| try_beside(&followed(path))),
+        Ok(there) if there.is_dir() => Err(io::ErrorKind::IsADirectory.into()),
+        Ok(_) => Ok(()),
+        Err(error) if error.kind() == io::ErrorKind::NotFound => try_beside(path),
+        Err(error) => Err(error),
+    };
+    checked.map_err(|source| refused(path, source))
+}
+
+fn refused(path: &Path, source: io::Error) -> WriteError {
+    WriteError::Io {
+        path: path.to_owned(),
+        source,
+    }
+}
+
+/// Replaces or makes the file `path`, with these permissions where it had some.
+fn replace(path: &Path, bytes: &[u8], permissions: Option<Permissions>) -> io::Result<()> {
+    let path = followed(path);
+    let (beside, mut file) = create_beside(&path)?;
     let written = file
         .write_all(bytes)
+        .and_then(|()| permissions.map_or(Ok(()), |p| file.set_permissions(p)))
         .and_then(|()| file.sync_all())
-        .and_then(|()| fs::rename(&beside, path));
+        .and_then(|()| fs::rename(&beside, &path));
     if written.is_err() {
         // The first error is the one to report.
         let _ = fs::remove_file(&beside);
@@ -107,17 +131,73 @@ fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
     written
 }
 
-/// A name in the folder of `path` that no other writer has.
-fn name_beside(path: &Path) -> io::Result<PathBuf> {
+/// Where `path` leads to, if it is a link to something.
+fn followed(path: &Path) -> PathBuf {
+    let is_link = fs::symlink_metadata(path).is_ok_and(|there| there.is_symlink());
+    let real = is_link.then(|| fs::canonicalize(path).ok()).flatten();
+    real.unwrap_or_else(|| path.to_owned())
+}
+
+/// Makes a file beside `path` and removes it again.
+fn try_beside(path: &Path) -> io::Result<()> {
+    let (beside, _) = create_beside(path)?;
+    fs::remove_file(beside)
+}
+
+/// A new file in the folder of `path`, under a name that no other writer has and that is no longer than names may be.
+fn create_beside(path: &Path) -> io::Result<(PathBuf, File)> {
     static N_WRITES: AtomicU32 = AtomicU32::new(0);
-    let name = path
-        .file_name()
-        .ok_or_else(|| io::Error::new(io::ErrorKind::InvalidInput, "not the name of a file"))?;
+    if path.file_name().is_none() {
+        let kind = io::ErrorKind::InvalidInput;
+        return Err(io::Error::new(kind, "not the name of a file"));
+    }
     let count = N_WRITES.fetch_add(1, Ordering::Relaxed);
-    let name = format!(
-        ".{}.{}-{count}.part",
-        name.to_string_lossy(),
-        std::process::id()
-    );
-    Ok(path.with_file_name(name))
+    let beside = path.with_file_name(format!(".drape-{}-{count}.part", std::process::id()));
+    let file = OpenOptions::new()
+        .write(true)
+        .create_new(true)
+        .open(&beside)?;
+    Ok((beside, file))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_longest_name_there_can_be_is_written_and_a_longer_one_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let longest = folder.path().join("n".repeat(255));
+        check_writable(&longest).unwrap();
+        write_atomic(&longest, b"x").unwrap();
+        let longer = folder.path().join("n".repeat(256));
+        assert!(check_writable(&longer).is_err() && write_atomic(&longer, b"x").is_err());
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+    }
+
+    #[test]
+    fn a_folder_or_what_lies_in_none_cannot_be_written() {
+        let folder = tempfile::tempdir().unwrap();
+        assert!(check_writable(folder.path()).is_err());
+        assert!(check_writable(folder.path().join("no/a.obj")).is_err());
+        assert!(check_writable(Path::new("..")).is_err());
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_file_that_is_replaced_hands_its_permissions_on() {
+        use std::os::unix::fs::{symlink, PermissionsExt as _};
+        let folder = tempfile::tempdir().unwrap();
+        let [file, link] = ["a.obj", "b.obj"].map(|name| folder.path().join(name));
+        fs::write(&file, b"old").unwrap();
+        fs::set_permissions(&file, Permissions::from_mode(0o640)).unwrap();
+        symlink("a.obj", &link).unwrap();
+        check_writable(&link).unwrap();
+        assert_eq!(fs::read(&file).unwrap(), b"old");
+        write_atomic(&link, b"new").unwrap();
+        assert_eq!(fs::read(&file).unwrap(), b"new");
+        let mode = fs::metadata(&file).unwrap().permissions().mode();
+        assert_eq!(mode & 0o777, 0o640);
+        assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
+    }
 }

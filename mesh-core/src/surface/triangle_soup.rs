@@ -17,7 +17,8 @@ use crate::{
 
 /// A target made of triangles, of which nothing is expected but finite corners.
 ///
-/// Polygons are split as by [`crate::Triangulation`]; a [`Location`] names rows of these triangles. Normals are those of the
+/// Polygons are split as by [`crate::Triangulation`]; a [`Location`] names rows of these triangles. Of triangles over the
+/// same three places two count, one for each side of a sheet: more of them say nothing new. Normals are those of the
 /// triangles, means on edges and corners, turned outwards as far as the shape tells (see
 /// [`TargetSurface::normal_sign`]).
 ///
@@ -45,16 +46,19 @@ impl TriangleSoup {
     /// # Errors
     /// A face that names a vertex that is not there, a coordinate that is not finite, or no face with three corners.
     pub fn new(soup: PolygonSoup) -> Result<Self, TopologyError> {
-        let (positions, triangles) = triangles(soup)?;
+        let (positions, mut triangles) = triangles(soup)?;
         if triangles.is_empty() {
             return Err(TopologyError::NoFaces);
+        }
+        let mut welded = WeldedTriangles::new(&positions, &triangles);
+        if let Some(fewer) = welded.at_most_two_of_each(&triangles) {
+            triangles = fewer;
+            welded = WeldedTriangles::new(&positions, &triangles);
         }
         let corners = |t: &[u32; 3]| t.map(|v| positions[v as usize]);
         let bvh = TriangleBvh::new(triangles.iter().map(corners).collect());
         let areas = || triangles.iter().map(|t| triangle_area(corners(t)));
         let (area, sampler) = (areas().sum(), TriangleSampler::new(areas()));
-
-        let welded = WeldedTriangles::new(&positions, &triangles);
         Ok(Self {
             boundary: open_boundary(&welded, &bvh),
             orientation: Orientation::new(&welded, &bvh),

@@ -48,6 +48,19 @@ impl WeldedTriangles {
             .collect()
     }
 
+    /// `rows` without those that follow two with the same three vertices; none where there are no such.
+    pub(super) fn at_most_two_of_each(&self, rows: &[[u32; 3]]) -> Option<Vec<[u32; 3]>> {
+        let mut n_seen = vec![0u8; rows.len()];
+        let mut is_new = |original: &u32| {
+            let seen = &mut n_seen[*original as usize];
+            *seen = seen.saturating_add(1);
+            *seen <= 2
+        };
+        let is_kept: Vec<bool> = self.originals.iter().map(&mut is_new).collect();
+        let kept = || rows.iter().zip(&is_kept).filter(|(_, kept)| **kept);
+        (kept().count() < rows.len()).then(|| kept().map(|(row, _)| *row).collect())
+    }
+
     /// The sides that share an edge, edge by edge.
     pub(super) fn edges(&self) -> impl Iterator<Item = &[Side]> {
         edges(&self.sides)

@@ -3,10 +3,11 @@
 //! Thresholds come from the twelve pairs of `data/pairs`: none of them is warned about, and exchanging a left and a
 //! right landmark is found in all but the few cases where the two lie close together.
 
-use mesh_core::{Aabb, Landmark, Point3, Positions, TargetSurface};
+use mesh_core::{Aabb, Landmark, Point3, TargetSurface};
 use mesh_init::{point_pairs, PointPair};
 
 use super::finding::Shared;
+use super::ways::Ways;
 use super::{Finding, Label};
 use crate::{Pair, Similarity};
 
@@ -28,8 +29,14 @@ const LEFT_OUT_RATIO: f64 = 4.0;
 const LEFT_OUT_LEAST: f64 = 0.04;
 /// It says something only where the others expect each other this well, on the median, in longest sides.
 const MUCH_ALIKE: f64 = 0.03;
-/// So many pairs that share a place are told one by one.
-const MAX_SAME_PLACES: usize = 20;
+/// So many findings of one kind are told one by one.
+const MAX_TOLD: usize = 20;
+/// With more landmarks than this, one map of all stands for those of all but one: it is the same but for a thousandth.
+const ENOUGH_TO_COUNT_AS_ALL: usize = 1000;
+/// No more landmarks are compared with each other, one by one.
+const MOST_COMPARED: usize = 10_000;
+/// No more exchanged pairs are looked for: a set that needs so many is wrong as a whole.
+const MOST_EXCHANGES: usize = 8;
 /// With more landmarks than this no exchanged pair is looked for: every pair of them would have to be tried.
 const ENOUGH_TO_TRUST: usize = 200;
 /// Fewer landmarks say too little about each other.
@@ -44,13 +51,15 @@ pub(crate) fn examine(pair: &Pair) -> Vec<Finding> {
     Case::of(pair).examine()
 }
 
-/// How far each landmark is from where the similarity of all others takes it, in longest sides of the target's box.
+/// How far each landmark is from where the similarity of all others takes it, in longest sides of the target's box. Of
+/// more than a thousand landmarks, that of all.
 pub fn leave_one_out_residuals(pair: &Pair) -> Vec<f64> {
     let case = Case::of(pair);
     case.residuals(&case.pairs)
 }
 
 struct Case<'a> {
+    pair: &'a Pair,
     landmarks: &'a [Landmark],
     pairs: Vec<PointPair>,
     target: &'a dyn TargetSurface,
@@ -61,12 +70,10 @@ struct Case<'a> {
 
 impl<'a> Case<'a> {
     fn of(pair: &'a Pair) -> Self {
+        let (landmarks, rest) = (&pair.landmarks, pair.source.rest());
         let target = pair.target.judged().as_ref();
-        Self::new(&pair.landmarks, pair.source.rest(), target)
-    }
-
-    fn new(landmarks: &'a [Landmark], rest: &Positions, target: &'a dyn TargetSurface) -> Self {
         Self {
+            pair,
             landmarks,
             pairs: point_pairs(landmarks, rest),
             target,
@@ -107,17 +114,24 @@ impl<'a> Case<'a> {
             .iter()
             .map(|c| c.distance_squared.sqrt())
             .enumerate();
-        far.filter(|(_, distance)| *distance > OFF_SURFACE * self.side)
-            .map(|(k, distance)| Finding::OffSurface {
+        let far: Vec<(usize, f64)> = far
+            .filter(|(_, distance)| *distance > OFF_SURFACE * self.side)
+            .collect();
+        let told = far.iter().take(MAX_TOLD);
+        let mut findings: Vec<Finding> = told
+            .map(|&(k, distance)| Finding::OffSurface {
                 landmark: self.label(k),
                 distance: distance / self.side,
             })
-            .collect()
+            .collect();
+        let n = far.len().saturating_sub(MAX_TOLD);
+        findings.extend((n > 0).then_some(Finding::MoreOffSurface { n }));
+        findings
     }
 
     fn same_places(&self) -> Vec<Finding> {
         let (mut findings, mut n_more) = (Vec::new(), 0);
-        for (j, b) in self.pairs.iter().enumerate() {
+        for (j, b) in self.pairs.iter().enumerate().take(MOST_COMPARED) {
             for (i, a) in self.pairs[..j].iter().enumerate() {
                 let same_source = (a.source - b.source).norm() <= SAME_PLACE * self.source_side;
                 let same_target = (a.target - b.target).norm() <= SAME_PLACE * self.side;
@@ -127,7 +141,7 @@ impl<'a> Case<'a> {
                     (false, true) => Shared::TargetOnly,
                     (false, false) => continue,
                 };
-                if findings.len() < MAX_SAME_PLACES {
+                if findings.len() < MAX_TOLD {
                     findings.push(Finding::SamePlace {
                         a: self.label(i),
                         b: self.label(j),
@@ -155,22 +169,59 @@ impl<'a> Case<'a> {
             return vec![Finding::Mirrored];
         }
         let mut pairs = self.pairs.clone();
+        let mut findings = self.exchanges(&mut pairs);
+        findings.extend(self.outlier(&pairs));
+        findings
+    }
+
+    /// Exchanges landmarks of `pairs` as long as that makes them fit. Where one would fit better in space, the ways along
+    /// the shapes decide, which no pose changes; where no ways join the landmarks, it is a question.
+    fn exchanges(&self, pairs: &mut [PointPair]) -> Vec<Finding> {
         let mut findings = Vec::new();
-        while let Some((i, j)) = exchanged(&pairs).filter(|_| findings.len() < self.pairs.len() / 2)
-        {
-            (pairs[i].target, pairs[j].target) = (pairs[j].target, pairs[i].target);
-            findings.push(Finding::Exchanged {
-                a: self.label(i),
-                b: self.label(j),
+        let most = MOST_EXCHANGES.min(pairs.len() / 2);
+        let mut ways = None;
+        while findings.len() < most {
+            let Some(suspects) = exchanged(pairs) else {
+                break;
+            };
+            let ways = ways.get_or_insert_with(|| Ways::of(self.pair));
+            let Some([i, j]) = ways.as_ref().map_or(Some(suspects), Ways::exchanged) else {
+                break;
+            };
+            let before = Similarity::fit(pairs).rms(pairs);
+            exchange(pairs, [i, j]);
+            if Similarity::fit(pairs).rms(pairs) >= before {
+                exchange(pairs, [i, j]);
+                break;
+            }
+            let (a, b) = (self.label(i), self.label(j));
+            findings.push(match ways {
+                Some(ways) => {
+                    ways.exchange([i, j]);
+                    Finding::Exchanged { a, b }
+                }
+                None => Finding::PerhapsExchanged { a, b },
             });
         }
-        findings.extend(self.outlier(&pairs));
         findings
     }
 
     /// The landmark without which the others fit best, if they then fit far better.
     fn outlier(&self, pairs: &[PointPair]) -> Option<Finding> {
         if pairs.len() < ENOUGH_TO_COMPARE {
+            return None;
+        }
+        let unexpected = || self.unexpected(pairs);
+        let (k, distance) = self.spoiler(pairs).or_else(unexpected)?;
+        Some(Finding::Unexpected {
+            landmark: self.label(k),
+            distance,
+        })
+    }
+
+    /// The landmark without which the others fit far better, and how far it is from where they expect it.
+    fn spoiler(&self, pairs: &[PointPair]) -> Option<(usize, f64)> {
+        if pairs.len() > ENOUGH_TO_COUNT_AS_ALL {
             return None;
         }
         let without = (0..pairs.len()).map(|k| {
@@ -182,15 +233,7 @@ impl<'a> Case<'a> {
         // Where all fit exactly, one of them is the worst by rounding alone.
         let is_off = miss > SAME_PLACE * self.side;
         let is_far_better = is_off && rms < OUTLIER_GAIN * Similarity::fit(pairs).rms(pairs);
-        let (k, distance) = if is_far_better {
-            (k, miss / self.side)
-        } else {
-            self.unexpected(pairs)?
-        };
-        Some(Finding::Unexpected {
-            landmark: self.label(k),
-            distance,
-        })
+        is_far_better.then_some((k, miss / self.side))
     }
 
     /// The landmark that the others, agreeing well among themselves, expect elsewhere.
@@ -211,6 +254,10 @@ impl<'a> Case<'a> {
 
     /// Distance of each pair from where the similarity of all others takes it, in longest sides.
     fn residuals(&self, pairs: &[PointPair]) -> Vec<f64> {
+        if pairs.len() > ENOUGH_TO_COUNT_AS_ALL {
+            let map = Similarity::fit(pairs);
+            return pairs.iter().map(|p| map.miss(p) / self.side).collect();
+        }
         let residual = |k| {
             let (one, others) = leave_out(pairs, k);
             Similarity::fit(&others).miss(&one) / self.side
@@ -247,8 +294,13 @@ fn others_agree(pairs: &[PointPair], i: usize, j: usize) -> bool {
         .all(|(before, after)| map.miss(after) < map.miss(before))
 }
 
+/// Exchanges the targets of two pairs.
+fn exchange(pairs: &mut [PointPair], [i, j]: [usize; 2]) {
+    (pairs[i].target, pairs[j].target) = (pairs[j].target, pairs[i].target);
+}
+
 /// The two pairs whose exchange lowers the misfit most, if it does so by enough.
-fn exchanged(pairs: &[PointPair]) -> Option<(usize, usize)> {
+fn exchanged(pairs: &[PointPair]) -> Option<[usize; 2]> {
     if !(ENOUGH_FOR_AFFINE + 1..=ENOUGH_TO_TRUST).contains(&pairs.len()) {
         return None;
     }
@@ -257,12 +309,12 @@ fn exchanged(pairs: &[PointPair]) -> Option<(usize, usize)> {
     let mut best = (EXCHANGE_GAIN * before, None);
     for j in 1..pairs.len() {
         for i in 0..j {
-            (trial[i].target, trial[j].target) = (pairs[j].target, pairs[i].target);
+            exchange(&mut trial, [i, j]);
             let after = Similarity::fit(&trial).rms(&trial);
             if after < best.0 && others_agree(pairs, i, j) {
-                best = (after, Some((i, j)));
+                best = (after, Some([i, j]));
             }
-            (trial[i].target, trial[j].target) = (pairs[i].target, pairs[j].target);
+            exchange(&mut trial, [i, j]);
         }
     }
     best.1
@@ -271,27 +323,30 @@ fn exchanged(pairs: &[PointPair]) -> Option<(usize, usize)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use mesh_core::{shapes, TriangleSoup, VertexId};
+    use crate::{Seams, Source, Target};
+    use mesh_core::{shapes, VertexId};
 
     /// Eight corners of a lopsided box on the target `2 x`, each marked.
-    fn corners() -> (Positions, TriangleSoup, Vec<Landmark>) {
+    fn corners() -> Pair {
         let mut soup = shapes::quad_sphere(1);
         for p in &mut soup.positions {
             *p = Point3::new(p.x * (1.5 + 0.3 * p.y), p.y, p.z * (0.7 + 0.1 * p.x));
         }
-        let rest: Positions = soup.positions.iter().copied().collect();
+        let source = Source::of_soup(soup.clone(), Seams::EXACT).unwrap();
         soup.positions.iter_mut().for_each(|p| *p *= 2.0);
-        let landmarks = rest
-            .ids()
-            .map(|v: VertexId| Landmark::new(v, rest[v] * 2.0))
-            .collect();
-        (rest, TriangleSoup::new(soup).unwrap(), landmarks)
+        let rest = source.rest();
+        let landmark = |v: VertexId| Landmark::new(v, rest[v] * 2.0);
+        Pair {
+            landmarks: rest.ids().map(landmark).collect(),
+            source,
+            target: Target::of_soup(soup).unwrap(),
+        }
     }
 
     fn findings(change: impl Fn(&mut Vec<Landmark>)) -> Vec<Finding> {
-        let (rest, target, mut landmarks) = corners();
-        change(&mut landmarks);
-        Case::new(&landmarks, &rest, &target).examine()
+        let mut pair = corners();
+        change(&mut pair.landmarks);
+        examine(&pair)
     }
 
     fn label(index: usize) -> Label {
@@ -336,7 +391,7 @@ mod tests {
             let eight = l.clone();
             (0..124).for_each(|_| l.extend(eight.clone()));
         });
-        assert_eq!(many.len(), MAX_SAME_PLACES + 1, "{:?}", many.last());
+        assert_eq!(many.len(), MAX_TOLD + 1, "{:?}", many.last());
         assert!(matches!(many.last(), Some(Finding::MoreSamePlaces { .. })));
     }
 

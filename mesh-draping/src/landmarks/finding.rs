@@ -27,6 +27,11 @@ pub enum Finding {
         /// How far, in longest sides of the target's box.
         distance: f64,
     },
+    /// More landmarks are off the target's surface than are told one by one.
+    MoreOffSurface {
+        /// How many more.
+        n: usize,
+    },
     /// Two landmarks share a place.
     SamePlace {
         /// The earlier one.
@@ -45,6 +50,13 @@ pub enum Finding {
     Mirrored,
     /// Two landmarks are probably exchanged.
     Exchanged {
+        /// The one.
+        a: Label,
+        /// The other.
+        b: Label,
+    },
+    /// Two landmarks fit better in space if exchanged; no ways along the shapes join them, to be surer.
+    PerhapsExchanged {
         /// The one.
         a: Label,
         /// The other.
@@ -76,12 +88,15 @@ impl Finding {
         let (first, second) = match self {
             Self::TooFew { .. }
             | Self::Few { .. }
+            | Self::MoreOffSurface { .. }
             | Self::MoreSamePlaces { .. }
             | Self::Mirrored => (None, None),
             Self::OffSurface { landmark, .. } | Self::Unexpected { landmark, .. } => {
                 (Some(landmark), None)
             }
-            Self::SamePlace { a, b, .. } | Self::Exchanged { a, b } => (Some(a), Some(b)),
+            Self::SamePlace { a, b, .. }
+            | Self::Exchanged { a, b }
+            | Self::PerhapsExchanged { a, b } => (Some(a), Some(b)),
         };
         first.into_iter().chain(second)
     }
@@ -106,6 +121,9 @@ impl fmt::Display for Finding {
                 "{landmark} is off the target's surface by {}",
                 percent(*distance)
             ),
+            Self::MoreOffSurface { n } => {
+                write!(f, "{n} more landmarks are off the target's surface, likewise")
+            }
             Self::SamePlace { a, b, on } => write!(f, "{a} and {b} {on}"),
             Self::MoreSamePlaces { n } => {
                 write!(f, "{n} more pairs of landmarks share places, likewise")
@@ -114,6 +132,9 @@ impl fmt::Display for Finding {
                 "the landmarks fit a mirror image better: left and right are probably exchanged throughout",
             ),
             Self::Exchanged { a, b } => write!(f, "{a} and {b} are probably exchanged"),
+            Self::PerhapsExchanged { a, b } => {
+                write!(f, "are {a} and {b} exchanged? in space they fit better so")
+            }
             Self::Unexpected { landmark, distance } => write!(
                 f,
                 "{landmark} is {} from where the other landmarks expect it",

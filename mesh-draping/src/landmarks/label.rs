@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use mesh_core::io::printable;
+
 /// A landmark by its row and, if it has one, its name: `landmark 3 (nose)`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Label {
@@ -26,7 +28,7 @@ impl fmt::Display for Label {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "landmark {}", self.index)?;
         match &self.name {
-            Some(name) => write!(f, " ({name})"),
+            Some(name) => write!(f, " ({})", printable(name)),
             None => Ok(()),
         }
     }

@@ -18,6 +18,7 @@ mod label;
 mod lines;
 mod mirror;
 mod suggest;
+mod ways;
 mod write;
 
 pub use doctor::leave_one_out_residuals;

@@ -13,8 +13,11 @@ use crate::{Note, Pair, Source, Target};
 const N_RAYS: usize = 48;
 /// A connected inner surface below this share of the area is a crevice, not a part.
 const LEAST_SHARE: f64 = 2e-3;
-/// Inner linings are carried along by themselves from this share of the area; less may be an armpit.
+/// Inner linings are carried along by themselves from this share of the area.
 const LINING_SHARE: f64 = 0.02;
+/// A lining is a pocket where its rim is shorter than that of a flat disc of its area, `2 √π √A`: the lining of a mouth has
+/// 1.1 to 3.5, the walls of an armpit, a groin or a fist, which the target has as well, 4.3 to 9.
+const POCKET_RIM_SQUARED: f64 = 4.0 * std::f64::consts::PI;
 /// A separate piece of which at least this share is hidden lies inside another: lids hide most of an eyeball.
 const INNER: f64 = 0.5;
 /// Inner surfaces of the target that are at least this large beside the source's are their counterparts.
@@ -27,6 +30,8 @@ pub struct InnerSurface {
     pub vertices: Vec<VertexId>,
     /// Its share of the area of the source, 0..=1.
     pub share: f64,
+    /// Length of the rim where it goes on into the outer surface, over the root of its area; 0 for a piece of its own.
+    pub rim: f64,
     /// What it is.
     pub kind: InnerKind,
 }
@@ -63,7 +68,8 @@ impl InnerSurface {
 
     /// Whether it is treated as proposed where nobody says otherwise and the target has nothing like it.
     fn is_clear(&self) -> bool {
-        self.kind != InnerKind::Lining || self.share >= LINING_SHARE
+        let is_pocket = self.rim.powi(2) < POCKET_RIM_SQUARED;
+        self.kind != InnerKind::Lining || self.share >= LINING_SHARE && is_pocket
     }
 }
 
@@ -164,6 +170,7 @@ pub fn inner_surfaces(source: &Source) -> Vec<InnerSurface> {
             let is_open = piece.iter().any(|&v| mesh.is_boundary_vertex(v));
             found.push(InnerSurface {
                 share: area / total,
+                rim: 0.0,
                 kind: if is_open {
                     InnerKind::OpenPiece
                 } else {
@@ -178,6 +185,7 @@ pub fn inner_surfaces(source: &Source) -> Vec<InnerSurface> {
         let share = vertices.iter().map(|&v| own[v]).sum::<f64>() / total;
         if share >= LEAST_SHARE {
             found.push(InnerSurface {
+                rim: rim(source, &vertices),
                 vertices,
                 share,
                 kind: InnerKind::Lining,
@@ -186,6 +194,32 @@ pub fn inner_surfaces(source: &Source) -> Vec<InnerSurface> {
     }
     found.sort_by(|a, b| b.share.total_cmp(&a.share));
     found
+}
+
+/// Length of the edges that bound the triangles of these vertices inside the surface, over the root of the area of those.
+fn rim(source: &Source, vertices: &[VertexId]) -> f64 {
+    let (triangulation, rest) = (source.triangulation(), source.rest());
+    let mut is_in = VertexData::new(rest.len(), false);
+    vertices.iter().for_each(|&v| is_in[v] = true);
+    let triangles = triangulation.triangles();
+    let is_inside = |t: &u32| triangles[*t as usize].iter().all(|&v| is_in[v]);
+    let bounds = |e: &usize| {
+        let sides = triangulation.edge_triangles(*e);
+        sides.len() > 1 && sides.iter().filter(|t| is_inside(t)).count() == 1
+    };
+    let edges = triangulation.edges();
+    let length: f64 = (0..edges.len())
+        .filter(bounds)
+        .map(|e| (rest[edges[e][0]] - rest[edges[e][1]]).norm())
+        .sum();
+    let areas = (0..triangles.len() as u32).filter(is_inside);
+    let areas = areas.map(|t| measure::triangle_area(triangles[t as usize].map(|v| rest[v])));
+    let area = areas.sum::<f64>();
+    if area > 0.0 {
+        length / area.sqrt()
+    } else {
+        f64::INFINITY
+    }
 }
 
 /// Share of the target's area that no ray from outside reaches; 0 for a cloud.
@@ -203,4 +237,27 @@ fn hidden_share(target: &Target) -> f64 {
         .map(|(a, _)| a)
         .sum();
     hidden / areas.iter().sum::<f64>().max(f64::MIN_POSITIVE)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A large lining is carried along by itself where it is a pocket, not where it is the walls of a groin.
+    #[test]
+    fn a_crevice_is_draped() {
+        let lining = |rim| InnerSurface {
+            vertices: Vec::new(),
+            share: 0.03,
+            rim,
+            kind: InnerKind::Lining,
+        };
+        let surfaces = HiddenSurfaces {
+            inner: vec![lining(6.0), lining(1.5)],
+            of_target: 0.0,
+        };
+        let treatments: Vec<Treatment> =
+            surfaces.inner.iter().map(|i| surfaces.unasked(i)).collect();
+        assert_eq!(treatments, [Treatment::Draped, Treatment::Free]);
+    }
 }

@@ -16,6 +16,8 @@ use trial::Trial;
 
 /// Vertices of the stand-in that starts are tried on.
 const N_VERTICES: usize = 1200;
+/// Where the best trial comes to more than this, a network leads one more: pairs that come to less end above Q 0.99 anyhow.
+const POOR: f64 = 0.7;
 
 /// Where a drape starts, and with which settings it goes on from there.
 pub(crate) struct Start {
@@ -42,33 +44,54 @@ impl Start {
         Ok(start)
     }
 
-    /// Tries this start and those that are led along the surfaces, and becomes the best of them.
+    /// Tries this start and those that are led along the surfaces, and becomes the best of them; where all are poor, a
+    /// network leads the best of them once more.
     ///
     /// # Errors
     /// This start cannot be tried; nothing is changed.
     fn improve(&mut self, pair: &Pair, preset: &Preset, regions: &Regions) -> Result<(), Error> {
         let stand_in = StandIn::with_vertices(pair, N_VERTICES)?;
         let regions = stand_in.regions(regions);
-        let trial = |start: &Positions| Trial::best(&stand_in.pair, preset, &regions, start);
+        let first = stand_in.pick(&self.shape.positions);
+        let trial = |start: Positions| -> Result<Tried, Error> {
+            let trial = Trial::best(&stand_in.pair, preset, &regions, &start)?;
+            Ok(Tried { start, trial })
+        };
         let (own, led) = rayon::join(
-            || trial(&stand_in.pick(&self.shape.positions)),
-            || -> Vec<Trial> {
-                let led = led(pair, &stand_in);
-                let trials: Vec<Result<Trial, Error>> = led.par_iter().map(trial).collect();
+            || trial(first),
+            || -> Vec<Tried> {
+                let starts = led(pair, &stand_in).into_par_iter();
+                let trials: Vec<Result<Tried, Error>> = starts.map(trial).collect();
                 trials.into_iter().flatten().collect()
             },
         );
         let own = own?;
+        let cost = |tried: &&Tried| tried.trial.cost();
+        let cheapest = |a: &&Tried, b: &&Tried| cost(a).total_cmp(&cost(b));
         let better = led
             .iter()
-            .filter(|led| led.is_better_start_than(&own))
-            .min_by(|a, b| a.cost().total_cmp(&b.cost()));
-        if let Some(better) = better {
-            self.shape.positions = stand_in.carry(&better.positions);
+            .filter(|led| led.trial.is_better_start_than(&own.trial));
+        let chosen = &better.min_by(cheapest).unwrap_or(&own).trial;
+        let best = led.iter().chain([&own]).min_by(cheapest).unwrap_or(&own);
+        // Without landmarks a smooth map drifts, and a rigid body is none to it.
+        let can_lead = pair.landmarks.len() >= ENOUGH_TO_STAND && regions.is_none();
+        let guided = (can_lead && cost(&best) > POOR)
+            .then(|| Trial::guided(&stand_in.pair, preset, &regions, &best.start));
+        let guided = guided.and_then(Result::ok);
+        let guided = guided.filter(|guided| guided.is_better_start_than(chosen));
+        let taken = guided.as_ref().unwrap_or(chosen);
+        if !std::ptr::eq(taken, &own.trial) {
+            self.shape.positions = stand_in.carry(&taken.positions);
         }
-        self.drape.overlap = better.unwrap_or(&own).overlap;
+        self.drape.overlap = taken.overlap;
         Ok(())
     }
+}
+
+/// A start of the stand-in, and what it came to.
+struct Tried {
+    start: Positions,
+    trial: Trial,
 }
 
 /// Shapes of the stand-in that are led along the surfaces.

@@ -25,6 +25,11 @@ const MORE_DISTORTED: f64 = 0.05;
 const CLEARLY: f64 = 0.92;
 /// Costs within this factor of each other are equal.
 const AS_NEAR: f64 = 1.02;
+/// A place farther than this from the other shape, in longest sides, is not reached.
+const FAR: f64 = 0.03;
+/// Where more than this share of what was kept is not reached, the kept part does not fit either, and leaving the rest out
+/// has no ground. Partial scans and masks that are draped well come to 0.08 at most, failed ones to 0.35.
+const UNREACHED: f64 = 0.15;
 
 /// What a short drape from a start came to.
 #[derive(Clone, Debug)]
@@ -37,6 +42,8 @@ pub(super) struct Trial {
     distortion: f64,
     /// Mean of the worst distances, the larger of both ways, in longest sides.
     worst: f64,
+    /// The share of what was not left out that is not reached, the larger of both shapes.
+    unreached: f64,
     /// Whether anything was taken as lying beyond the other shape.
     is_any_left_out: bool,
     /// Shares of the source and of the target that were left out.
@@ -66,17 +73,30 @@ impl Trial {
         })
     }
 
+    /// As [`Self::best`], from where a network of the rest shape has led the start ([`neural_drape::DrapeConfig::guide`]).
+    pub(super) fn guided(
+        pair: &Pair,
+        preset: &Preset,
+        regions: &Regions,
+        start: &Positions,
+    ) -> Result<Self, Error> {
+        let mut guide = set_up(pair, preset.drape.guide(), start, regions)?;
+        while guide.step()?.is_some() {}
+        Self::best(pair, preset, regions, &guide.positions())
+    }
+
     /// Whether the start of this trial is to be taken in the place of the first, whose trial is `first`.
     pub(super) fn is_better_start_than(&self, first: &Self) -> bool {
         self.cost() < BETTER_START * first.cost()
             && self.distortion <= first.distortion + MORE_DISTORTED
     }
 
-    /// Clearly nearer, or as near and clearly less distorted.
+    /// Clearly nearer, or as near and clearly less distorted; or the other left parts out and what it kept does not fit.
     fn is_clearly_better_than(&self, other: &Self) -> bool {
         let is_as_near = self.cost() <= AS_NEAR * other.cost();
         self.cost() < CLEARLY * other.cost()
             || is_as_near && self.distortion < CLEARLY * other.distortion
+            || other.is_any_left_out && other.unreached > UNREACHED
     }
 
     /// What is compared: the norm of which Q_transfer is made, of the worst distances in the place of the largest, and what
@@ -107,6 +127,7 @@ impl Trial {
             is_any_left_out: drape.overlap() != Overlap::default() || drape.is_mesh_part_left_out(),
             overlap,
             distortion: energy - 1.0,
+            unreached: unreached(&to_target, size).max(unreached(&to_mesh, size)),
             worst: worst_mean(to_target).max(worst_mean(to_mesh)) / size,
             left_out: [mesh_left_out, target_left_out],
             positions: x,
@@ -157,6 +178,12 @@ fn counted(
     let distances: Vec<f64> = kept.map(|(_, hit)| hit.distance_squared.sqrt()).collect();
     let share = 1.0 - distances.len() as f64 / hits.len().max(1) as f64;
     (distances, share)
+}
+
+/// Share of the distances that are farther than [`FAR`]; 0 of none.
+fn unreached(distances: &[f64], size: f64) -> f64 {
+    let n_far = distances.iter().filter(|d| **d > FAR * size).count();
+    n_far as f64 / distances.len().max(1) as f64
 }
 
 /// Mean of the largest distances; 0 of none.

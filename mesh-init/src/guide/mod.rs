@@ -4,6 +4,7 @@ mod counterpart;
 mod elastic;
 mod graph;
 mod signature;
+mod ways;
 
 use mesh_core::{Landmark, Positions, TargetSurface, Triangulation};
 
@@ -13,6 +14,7 @@ use counterpart::{PairCost, Shapes};
 use elastic::{Elastic, Goal};
 use graph::SampleGraph;
 use signature::Misfits;
+pub use ways::LandmarkWays;
 
 /// Pull of a landmark; 1 is about as strong as the surface's own.
 const LANDMARK_WEIGHT: f64 = 30.0;
@@ -128,13 +130,7 @@ impl<'a> Guide<'a> {
         let size = input.target.bounds().longest_side();
         let graph = SampleGraph::new(input.target, N_SAMPLES);
         Ok(Self {
-            misfits: Misfits::new(
-                input.triangulation,
-                input.rest,
-                input.landmarks,
-                &graph,
-                size,
-            ),
+            misfits: Misfits::new(&input, &graph, size),
             input,
             size,
             graph,

@@ -1,10 +1,11 @@
 //! How far a place is from every landmark along its surface: where it is on the body, however the body stands.
 
-use mesh_core::{Landmark, Point3, Positions, Triangulation, VertexId};
-use mesh_operators::geodesic_distance_unfolded;
+use mesh_core::VertexId;
 use rayon::prelude::*;
 
 use super::graph::SampleGraph;
+use super::ways::{LandmarkWays, Ways};
+use super::GuideInput;
 
 /// Landmarks nearer than this share of the longest side count alike.
 const NEAR: f64 = 0.1;
@@ -30,30 +31,17 @@ pub(super) struct Misfits {
 }
 
 impl Misfits {
-    pub(super) fn new(
-        triangulation: &Triangulation,
-        rest: &Positions,
-        landmarks: &[Landmark],
-        graph: &SampleGraph,
-        size: f64,
-    ) -> Self {
+    /// `size` is the longest side of the target.
+    pub(super) fn new(input: &GuideInput<'_>, graph: &SampleGraph, size: f64) -> Self {
         let n_samples = graph.points.len();
-        let marks: Vec<VertexId> = landmarks.iter().map(|l| l.source.main_vertex()).collect();
-        let places: Vec<Point3> = landmarks.iter().map(|l| l.target).collect();
-        let on_source = marks
-            .par_iter()
-            .map(|&v| geodesic_distance_unfolded(triangulation, rest, &[v]).into_vec());
-        let on_target = places.par_iter().map(|p| graph.distances(p));
-        let ways = Ways {
-            on_source: on_source.collect(),
-            on_target: on_target.collect(),
-            size,
-        };
-        let ratios = Ratios::new(&ways, &marks, &places, graph);
+        let ways = Ways::new(input, graph);
+        let ratios = Ratios::new(&ways.between(input.landmarks, graph));
         let found = |t: usize| ways.on_target.iter().map(move |d| (d[t] / size) as f32);
         let found: Vec<f32> = (0..n_samples).flat_map(found).collect();
-        let rows = (0..rest.len()).into_par_iter().flat_map_iter(|v| {
-            let expected = ratios.expected(&ways, v);
+        let rows = input.rest.ids().collect::<Vec<VertexId>>();
+        let rows = rows.into_par_iter().flat_map_iter(|v| {
+            let to_landmarks: Vec<f64> = ways.on_source.iter().map(|d| d[v]).collect();
+            let expected = ratios.expected(&to_landmarks, size);
             let found = &found;
             (0..n_samples).map(move |t| {
                 let n = expected.len();
@@ -72,14 +60,6 @@ impl Misfits {
     }
 }
 
-/// Distances along both shapes from each landmark.
-struct Ways {
-    on_source: Vec<Vec<f64>>,
-    on_target: Vec<Vec<f64>>,
-    /// The longest side of the target.
-    size: f64,
-}
-
 /// How much longer a way is on the target.
 struct Ratios {
     /// From one landmark (row) to another (column), as a logarithm; none where no way leads.
@@ -89,18 +69,13 @@ struct Ratios {
 }
 
 impl Ratios {
-    fn new(ways: &Ways, marks: &[VertexId], places: &[Point3], graph: &SampleGraph) -> Self {
-        let samples: Vec<Option<usize>> = places.iter().map(|p| graph.nearest(p)).collect();
+    fn new(ways: &LandmarkWays) -> Self {
         let ratio = |i: usize, j: usize| {
-            let (on_source, on_target) = (
-                ways.on_source[j][marks[i].index()],
-                ways.on_target[j][samples[i]?],
-            );
-            let ratio = on_target / on_source;
+            let ratio = ways.on_target[j][i] / ways.on_source[j][i];
             let is_way = i != j && ratio.is_finite() && ratio > 0.0;
             is_way.then(|| ratio.clamp(1.0 / LARGEST_RATIO, LARGEST_RATIO).ln())
         };
-        let n = marks.len();
+        let n = ways.on_source.len();
         let between: Vec<Vec<Option<f64>>> = (0..n)
             .map(|i| (0..n).map(|j| ratio(i, j)).collect())
             .collect();
@@ -112,10 +87,10 @@ impl Ratios {
         }
     }
 
-    /// What the distances of vertex `v` to each landmark should be on the target, in longest sides, and how much each
-    /// counts, summing to 1 where any does.
-    fn expected(&self, ways: &Ways, v: usize) -> Vec<(f32, f32)> {
-        let distance = |k: usize| ways.on_source[k][v] * self.median.exp() / ways.size;
+    /// What the distances of a place to each landmark should be on the target, in longest sides, and how much each counts,
+    /// summing to 1 where any does; `on_source` are those along the source, `size` is the longest side of the target.
+    fn expected(&self, on_source: &[f64], size: f64) -> Vec<(f32, f32)> {
+        let distance = |k: usize| on_source[k] * self.median.exp() / size;
         let n = self.between.len();
         let nearness: Vec<f64> = (0..n)
             .map(|k| (distance(k) + NEAR_RATIO).powi(-2))
@@ -128,7 +103,7 @@ impl Ratios {
                     total += near;
                 }
             }
-            let length = ways.on_source[k][v] * (sum / total).exp() / ways.size;
+            let length = on_source[k] * (sum / total).exp() / size;
             if length.is_finite() {
                 (length as f32, (length + NEAR).powi(-2) as f32)
             } else {

@@ -15,7 +15,7 @@ use crate::config::{Descent, DrapeConfig};
 use crate::coverage::{mark_uncovered, Pairing, Target, FAR_BEYOND, N_BEYOND};
 use crate::guard::{ground, Guard, PERIOD};
 use crate::input::check_length;
-use crate::network::NetworkMap;
+use crate::network::{NetworkMap, Shapes};
 use crate::objective::{self, DistanceLoss, StructuralLoss, TermReport};
 use crate::regions::{Follow, Guidance, Regions};
 use crate::schedule::Weights;
@@ -74,7 +74,8 @@ impl Drape {
     pub fn new(input: DrapeInput<'_>, config: DrapeConfig) -> Result<Self, DrapeError> {
         let (what, seed) = (config.parametrization.clone(), config.seed);
         Self::with_parametrization(input, config, |initial| {
-            what.build(input.triangulation, initial, seed)
+            let rest = input.rest;
+            what.build(input.triangulation, Shapes { rest, initial }, seed)
         })
     }
 
@@ -174,16 +175,20 @@ impl Drape {
 
         let (overlap, mutual) = self.pairing.at(self.iteration, progress);
         let sampling = self.config.sampling.at(self.iteration, overlap, mutual);
+        if let Some(position) = self.config.sampling.draws_from(self.iteration) {
+            self.rng.set_word_position(position);
+        }
         let x = self.parametrization.positions();
         let matches = self
             .matcher
             .resample(x, &sampling, &mut self.rng, &mut self.profile);
         self.guidance.note(&matches, self.pairing.overlap);
 
-        // Eq. 1: L = L_d + λ L_s, the two descended in turn or as one sum.
+        // Eq. 1: L = L_d + λ L_s, the two descended in turn, each with the penalty of Eq. 4, or as one sum.
         let distance = self.add_distance_loss(&matches, &weights);
         self.matcher.recycle(matches);
         if self.config.descent == Descent::Alternating {
+            self.add_skinny_penalty(&weights);
             self.descend(rate)?;
         }
         let structure = self.add_structural_loss(&weights);
@@ -370,7 +375,14 @@ impl Drape {
         objective::accumulate(&loss.terms(weights), x, gradient, profile)
     }
 
-    /// Adds λ dL_s/dx at the present positions (Eq. 3).
+    /// Adds the gradient of the penalty on skinny triangles at the present positions (Eq. 4).
+    fn add_skinny_penalty(&mut self, weights: &Weights) {
+        let terms = [self.structure.skinny(weights)];
+        let x = self.parametrization.positions();
+        objective::accumulate(&terms, x, &mut self.gradient, &mut self.profile);
+    }
+
+    /// Adds λ dL_s/dx at the present positions (Eq. 3), and the penalty of Eq. 4.
     fn add_structural_loss(&mut self, weights: &Weights) -> Vec<TermReport> {
         let terms = self.structure.terms(weights);
         let x = self.parametrization.positions();

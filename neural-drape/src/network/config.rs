@@ -4,9 +4,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::setting::Setting;
 
-/// Shape of the network that maps initial positions to draped ones.
+/// Shape of the network that moves initial positions to draped ones.
 ///
-/// Positions enter in the frame where the longest side of the initial shape is 2, so a coordinate lies in ±1.
+/// Positions enter in the frame where the longest side of the shape that is seen is 2, so a coordinate lies in ±1.
 #[derive(Clone, Copy, PartialEq, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct NetworkConfig {
@@ -14,11 +14,24 @@ pub struct NetworkConfig {
     pub n_hidden_layers: usize,
     /// Neurons of each hidden layer, ≥ 1. Paper: 256.
     pub width: usize,
-    /// What the first layer sees of a position.
+    /// Which position of a vertex the network sees.
+    pub input: NetworkInput,
+    /// What the first layer sees of it.
     pub encoding: Encoding,
     /// Length, in half longest sides, of the offset for which the last layer puts out 1. It sets how far an Adam step
     /// moves a vertex.
     pub output_scale: f64,
+}
+
+/// Which position of a vertex a network sees.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum NetworkInput {
+    /// Where it starts: the network is a map of space (the paper).
+    Initial,
+    /// Where it is in the source: parts that start laid on each other, and places of a part that starts crumpled, are apart
+    /// to the network. It is a map of the surface alone.
+    Rest,
 }
 
 /// What the first layer sees of a position x.
@@ -37,6 +50,8 @@ pub enum Encoding {
         n_blocks: usize,
         /// When the other blocks come in.
         reveal: Reveal,
+        /// What the blocks go into.
+        networks: Networks,
     },
 }
 
@@ -62,12 +77,26 @@ pub enum Frequencies {
     },
 }
 
+/// What the blocks of a progressive encoding go into.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Networks {
+    /// One network, which sees all blocks through the mask α (the paper).
+    One,
+    /// A network for each block, which sees that block and those before it: their outputs are summed, each times the α of its
+    /// block (the authors' program). One that is hidden does not train, and its optimiser begins when it comes in.
+    OnePerBlock,
+}
+
 /// When the blocks of a progressive encoding come in, as the run goes from 0 to 1.
 #[derive(Clone, Copy, PartialEq, Debug, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Reveal {
-    /// Twice as many phases as blocks: even ones hold, odd ones fade the next block in (the authors' program).
-    HoldAndFade,
+    /// Twice as many phases as blocks, of equal length: even ones hold, odd ones fade the next block in (the authors' program).
+    HoldAndFade {
+        /// Part of the run that the phases take, above 0; the run ends before them where it is above 1.
+        until: f64,
+    },
     /// One block after the other, all there when the run reaches `until`.
     Even {
         /// Part of the run, in (0, 1].
@@ -78,13 +107,13 @@ pub enum Reveal {
 impl NetworkConfig {
     /// The paper's network: 4 hidden layers of 256 on a progressive encoding in 6 blocks.
     ///
-    /// The waves, their training and the schedule are the authors' program's; the paper names none. Departures: one
-    /// network on the masked encoding, as the paper says, where the program sums six; a residual output that starts
+    /// The waves, their training and the schedule are the authors' program's; the paper names none. A residual output starts
     /// at the identity, where the program is trained to it first.
     pub fn paper() -> Self {
         Self {
             n_hidden_layers: 4,
             width: 256,
+            input: NetworkInput::Initial,
             encoding: Encoding::Progressive {
                 frequencies: Frequencies::Uniform {
                     count: 253,
@@ -92,9 +121,38 @@ impl NetworkConfig {
                     trainable: true,
                 },
                 n_blocks: 6,
-                reveal: Reveal::HoldAndFade,
+                reveal: Reveal::HoldAndFade { until: 1.0 },
+                networks: Networks::One,
             },
             output_scale: 1.0,
+        }
+    }
+
+    /// The network of the authors' program at 1500 of its 2000 iterations: six on prefixes of the encoding, summed, the last of
+    /// which hardly comes in.
+    ///
+    /// 10 units of its output are half the longest side. Departure: a residual output, see [`Self::paper`].
+    pub fn authors() -> Self {
+        let paper = Self::paper();
+        let encoding = match paper.encoding {
+            Encoding::Progressive {
+                frequencies,
+                n_blocks,
+                ..
+            } => Encoding::Progressive {
+                frequencies,
+                n_blocks,
+                reveal: Reveal::HoldAndFade {
+                    until: 2000.0 / 1500.0,
+                },
+                networks: Networks::OnePerBlock,
+            },
+            other => other,
+        };
+        Self {
+            encoding,
+            output_scale: 0.1,
+            ..paper
         }
     }
 
@@ -112,8 +170,17 @@ impl NetworkConfig {
                 },
                 n_blocks: 6,
                 reveal: Reveal::Even { until: 0.4 },
+                networks: Networks::One,
             },
             ..Self::paper()
+        }
+    }
+
+    /// [`Self::standard`] over the positions of the source: the smooth map that leads a start ([`crate::DrapeConfig::guide`]).
+    pub fn guide() -> Self {
+        Self {
+            input: NetworkInput::Rest,
+            ..Self::standard()
         }
     }
 
@@ -136,13 +203,20 @@ impl NetworkConfig {
             None => {}
         }
         if let Encoding::Progressive {
-            n_blocks, reveal, ..
+            n_blocks,
+            reveal,
+            networks,
+            ..
         } = self.encoding
         {
-            settings.push(Setting::count("n_blocks", n_blocks));
-            if let Reveal::Even { until } = reveal {
-                settings.push(Setting::positive_share("until", until));
-            }
+            settings.push(match networks {
+                Networks::One => Setting::count("n_blocks", n_blocks),
+                Networks::OnePerBlock => Setting::few("n_blocks", n_blocks),
+            });
+            settings.push(match reveal {
+                Reveal::HoldAndFade { until } => Setting::positive("until", until),
+                Reveal::Even { until } => Setting::positive_share("until", until),
+            });
         }
         settings
     }
@@ -154,6 +228,18 @@ impl Encoding {
         match *self {
             Self::None => None,
             Self::Static(frequencies) | Self::Progressive { frequencies, .. } => Some(frequencies),
+        }
+    }
+
+    /// How many networks are summed.
+    pub(crate) fn n_networks(&self) -> usize {
+        match *self {
+            Self::Progressive {
+                n_blocks,
+                networks: Networks::OnePerBlock,
+                ..
+            } => n_blocks,
+            _ => 1,
         }
     }
 

@@ -40,6 +40,12 @@ impl Layer {
 
 #[cfg(feature = "network")]
 impl Layer {
+    /// `y = a (Wᵀ x + b)` from now on.
+    pub(super) fn scale(&mut self, a: f32) {
+        let entries = self.weight.iter_mut().chain(&mut self.bias);
+        entries.for_each(|entry| *entry *= a);
+    }
+
     /// Adds dL/dW = x (dL/dy)ᵀ and dL/db = Σ dL/dy.
     pub(super) fn add_gradient(&self, sum: &mut Self, input: MatRef<'_, f32>, by_output: &[f32]) {
         let view =

@@ -7,7 +7,7 @@ use super::block::{Block, BLOCK_SIZE};
 use super::encoding::Waves;
 use super::layer::Layer;
 
-/// Where the network sends points: `p ↦ p + r · mlp(encoding((p − center) / r))`.
+/// Where the network sends points: `p ↦ p + r · mlp(encoding((p − center) / r))`, or the sum of several such offsets.
 ///
 /// r is half the longest side of the shape the network was made for. Points outside that shape are moved too; what
 /// the network does far from it is not controlled.
@@ -19,8 +19,8 @@ pub struct NetworkMap {
     pub(crate) output_scale: f64,
     /// Waves of the encoding; those past the first layer's inputs are hidden.
     pub(crate) waves: Waves,
-    /// The layers, first to last; a ReLU stands between them.
-    pub(crate) layers: Vec<Layer>,
+    /// The layers of each network, first to last; a ReLU stands between them. What the networks put out is summed.
+    pub(crate) networks: Vec<Vec<Layer>>,
 }
 
 impl NetworkMap {
@@ -30,12 +30,11 @@ impl NetworkMap {
             .par_chunks(BLOCK_SIZE)
             .flat_map_iter(|chunk| {
                 let mut block = Block::new(
-                    chunk.iter().map(|p| self.to_input(p)).collect(),
+                    chunk.iter().map(|p| to_input(&self.frame, p)).collect(),
                     &self.waves,
-                    &self.layers,
                 );
-                block.encode(&self.waves, self.layers[0].n_inputs());
-                block.forward(&self.layers);
+                block.encode(&self.waves, self.n_revealed());
+                block.forward(&self.networks);
                 chunk
                     .iter()
                     .zip(block.outputs().collect::<Vec<_>>())
@@ -56,32 +55,35 @@ impl NetworkMap {
         }
     }
 
-    /// Whether every layer takes what the one before gives, from the features to three coordinates.
+    /// How many features of a point some network sees.
+    pub(super) fn n_revealed(&self) -> usize {
+        let n_inputs = self.networks.iter().map(|layers| layers[0].n_inputs());
+        n_inputs.max().unwrap_or(3)
+    }
+
+    /// Whether there is a network, and in each every layer takes what the one before gives, from the features to three
+    /// coordinates.
     pub(crate) fn is_consistent(&self) -> bool {
+        self.frame.scale > 0.0
+            && !self.networks.is_empty()
+            && self.networks.iter().all(|layers| self.is_network(layers))
+    }
+
+    fn is_network(&self, layers: &[Layer]) -> bool {
         let fits = |layer: &Layer| {
             !layer.bias.is_empty()
                 && !layer.weight.is_empty()
                 && layer.weight.len().is_multiple_of(layer.bias.len())
         };
-        let (Some(first), Some(last)) = (self.layers.first(), self.layers.last()) else {
+        let (Some(first), Some(last)) = (layers.first(), layers.last()) else {
             return false;
         };
-        self.frame.scale > 0.0
-            && self.layers.iter().all(fits)
+        layers.iter().all(fits)
             && (3..=self.waves.n_features()).contains(&first.n_inputs())
             && last.n_outputs() == 3
-            && self
-                .layers
+            && layers
                 .windows(2)
                 .all(|pair| pair[0].n_outputs() == pair[1].n_inputs())
-    }
-
-    /// A point as the network sees it: ±1 over the shape's longest side.
-    pub(super) fn to_input(&self, p: &Point3) -> [f32; 3] {
-        (self.frame.to_unit(p) * 2.0)
-            .coords
-            .map(|c| c as f32)
-            .into()
     }
 
     /// The offset that an output stands for, in the shape's units.
@@ -93,4 +95,9 @@ impl NetworkMap {
     pub(super) fn output_unit(&self) -> f64 {
         0.5 * self.frame.scale * self.output_scale
     }
+}
+
+/// A point as the network sees it: ±1 over the longest side of the shape that `frame` is of.
+pub(super) fn to_input(frame: &UnitFrame, p: &Point3) -> [f32; 3] {
+    (frame.to_unit(p) * 2.0).coords.map(|c| c as f32).into()
 }

@@ -1,9 +1,10 @@
 //! The mask α of the progressive encoding α ⊙ γ(x): low frequencies first, high ones as the run goes on.
 
-use super::config::{Encoding, Reveal};
+use super::config::{Encoding, Networks, Reveal};
 use super::encoding::Waves;
 
-/// The mask α of the progressive encoding: the first layer sees `α ⊙ γ(x)`, γ(x) the features of a point.
+/// The mask α of the progressive encoding: the first layer of a network sees `α ⊙ γ(x)`, γ(x) the features of a point that
+/// the network is made for.
 ///
 /// Since `Wᵀ(α ⊙ γ) = (diag(α) W)ᵀ γ`, the mask is put into the weights of the first layer ([`Self::weigh`]), and features
 /// past the last that is revealed are not computed.
@@ -13,18 +14,54 @@ use super::encoding::Waves;
 pub(crate) struct Mask {
     /// α, one entry per feature, each in 0..=1: 1 for the coordinates, then that of its wave.
     alpha: Vec<f32>,
+    /// Factor of what the network puts out, 0..=1: one of several that are summed comes in by it.
+    output: f32,
 }
 
 impl Mask {
-    /// α of `encoding` when the run has come to `progress` in 0..=1.
-    pub(crate) fn at(encoding: &Encoding, waves: &Waves, progress: f64) -> Self {
-        let rows = encoding.row_weights(waves.rows.len(), progress);
+    /// The mask of each network of `encoding` when the run has come to `progress` in 0..=1.
+    pub(crate) fn all_at(encoding: &Encoding, waves: &Waves, progress: f64) -> Vec<Self> {
+        let n_rows = waves.rows.len();
+        match *encoding {
+            Encoding::Progressive {
+                n_blocks,
+                reveal,
+                networks: Networks::OnePerBlock,
+                ..
+            } => (0..n_blocks)
+                .map(|block| {
+                    let seen = (0..n_rows).filter(|&row| block_of(row, n_rows, n_blocks) <= block);
+                    let output = reveal.weight(block, n_blocks, progress);
+                    Self::new(waves, &vec![1.0; seen.count()], output)
+                })
+                .collect(),
+            _ => vec![Self::new(
+                waves,
+                &encoding.row_weights(n_rows, progress),
+                1.0,
+            )],
+        }
+    }
+
+    /// The mask of a network that sees as many rows of `waves` as there are `rows`, each by its weight.
+    fn new(waves: &Waves, rows: &[f32], output: f32) -> Self {
         let of_waves = rows
-            .into_iter()
-            .flat_map(|w| std::iter::repeat_n(w, waves.kind.n_features()));
+            .iter()
+            .flat_map(|&w| std::iter::repeat_n(w, waves.kind.n_features()));
         Self {
             alpha: [1.0; 3].into_iter().chain(of_waves).collect(),
+            output,
         }
+    }
+
+    /// How many features the network is made for.
+    pub(crate) fn n_features(&self) -> usize {
+        self.alpha.len()
+    }
+
+    /// Factor of what the network puts out, 0..=1; the network is hidden where it is 0.
+    pub(crate) fn output(&self) -> f32 {
+        self.output
     }
 
     /// How many features are revealed: all before the last whose α is not 0.
@@ -72,7 +109,7 @@ impl Reveal {
         }
         let (block, n_blocks) = (block as f64, n_blocks as f64);
         let weight = match *self {
-            Self::HoldAndFade => 2.0 * n_blocks * progress - (2.0 * block - 1.0),
+            Self::HoldAndFade { until } => 2.0 * n_blocks * progress / until - (2.0 * block - 1.0),
             Self::Even { until } => (n_blocks - 1.0) * progress / until - (block - 1.0),
         };
         weight.clamp(0.0, 1.0) as f32
@@ -123,5 +160,48 @@ mod tests {
                 assert!(weights(step).windows(2).all(|pair| pair[0] >= pair[1]));
             }
         }
+    }
+
+    #[test]
+    fn the_schedule_of_the_authors_holds_and_fades_in_turns() {
+        let Encoding::Progressive { reveal, .. } = NetworkConfig::authors().encoding else {
+            panic!("a progressive encoding");
+        };
+        // Phases of 2000 / 12 iterations of a run that ends at 1500.
+        let alpha = |block, iteration: f64| reveal.weight(block, 6, iteration / 1500.0);
+        let phase = 2000.0 / 12.0;
+        for block in 1..6 {
+            let start = (2 * block - 1) as f64 * phase;
+            assert_eq!(alpha(block, start - 1.0), 0.0);
+            assert!((alpha(block, start + 0.5 * phase) - 0.5).abs() < 1e-6);
+            assert_eq!(alpha(block, start + phase + 1.0), 1.0);
+        }
+        // The paper's run is as long as its schedule.
+        let Encoding::Progressive { reveal, .. } = NetworkConfig::paper().encoding else {
+            panic!("a progressive encoding");
+        };
+        assert_eq!(reveal.weight(5, 6, 9.0 / 12.0), 0.0);
+        assert_eq!(reveal.weight(5, 6, 10.0 / 12.0), 1.0);
+    }
+
+    #[test]
+    fn networks_on_prefixes_see_their_block_and_those_before() {
+        let encoding = NetworkConfig::authors().encoding;
+        let waves = Waves {
+            rows: vec![[0.0; 3]; 253],
+            ..Waves::NONE
+        };
+        let masks = Mask::all_at(&encoding, &waves, 0.0);
+        let sizes: Vec<usize> = masks.iter().map(Mask::n_features).collect();
+        assert_eq!(sizes, [6, 56, 106, 156, 206, 256]);
+        assert!(masks
+            .iter()
+            .all(|mask| mask.alpha.iter().all(|&a| a == 1.0)));
+        let outputs: Vec<f32> = masks.iter().map(Mask::output).collect();
+        assert_eq!(outputs, [1.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
+        assert_eq!(
+            Mask::all_at(&NetworkConfig::paper().encoding, &waves, 0.0).len(),
+            1
+        );
     }
 }

@@ -7,19 +7,23 @@ use mesh_core::{Aabb, Positions, UnitFrame, Vector3, VertexData};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
-use super::config::{Encoding, NetworkConfig};
+use super::config::{Encoding, NetworkConfig, NetworkInput};
 use super::encoding::Waves;
-use super::map::NetworkMap;
+use super::map::{to_input, NetworkMap};
 use super::mask::Mask;
 use super::pass::Pass;
 use super::tape::{lock, Adam, Evaluation, Parameters};
+use super::Shapes;
+use crate::input::check_length;
 use crate::setting::Setting;
 use crate::{DrapeError, Parametrization, StateReader, StateWriter};
 
-/// Positions as a network of the initial positions: `x = x₀ + r · mlp(encoding(x₀ / r))`, r half the longest side.
+/// Positions as a network of the initial positions: `x = x₀ + r · mlp(encoding(x₀ / r))`, r half the longest side; or of
+/// those of the source, y: `x = x₀ + r · mlp(encoding(y / r_y))` ([`NetworkInput::Rest`]); or as the sum of several such
+/// offsets ([`super::Networks`]).
 ///
-/// The last layer starts at zero, so the network starts exactly at the initial positions, and equal initial positions
-/// stay equal. dfdx owns the parameters, the tape and Adam (betas 0.9 and 0.999, ε 1e-8); the layers are one fused
+/// Last layers start at zero, so the network starts exactly at the initial positions, and equal positions that are seen
+/// move alike. dfdx owns the parameters, the tape and Adam (betas 0.9 and 0.999, ε 1e-8); the layers are one fused
 /// operation on its tape. Inside all is f32; the same seed gives the same bits whatever the thread count.
 ///
 /// Source: Mesh Draping, "Progressive Positional Encoding". Departures: see [`NetworkConfig::paper`].
@@ -32,38 +36,42 @@ pub struct Network {
     adam: Adam,
     evaluation: Arc<Mutex<Evaluation>>,
     progress: f64,
-    /// Whether more than the network moves the initial positions.
+    /// Whether the positions are more than a map of the initial ones by the network.
     is_displaced: bool,
 }
 
 impl Network {
-    /// A network that leaves `initial` where it is, with every other weight drawn from `seed`.
+    /// A network that leaves `shapes.initial` where it is, with every other weight drawn from `seed`.
     ///
     /// # Errors
-    /// A setting is out of its range.
+    /// A setting is out of its range, or the shapes differ in length.
     ///
     /// # Panics
     /// If there is no position.
-    pub fn new(initial: &Positions, config: &NetworkConfig, seed: u64) -> Result<Self, DrapeError> {
+    pub fn new(shapes: Shapes<'_>, config: &NetworkConfig, seed: u64) -> Result<Self, DrapeError> {
+        let Shapes { rest, initial } = shapes;
         assert!(!initial.is_empty(), "a network needs a vertex to move");
+        check_length("the rest shape", rest.len(), initial.len())?;
         Setting::check(config.settings())?;
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
         let waves = Waves::draw(&config.encoding, &mut rng);
         let is_trainable = config.encoding.is_trainable();
-        let mut sizes = vec![config.width; config.n_hidden_layers + 2];
-        sizes[0] = waves.n_features();
-        sizes[config.n_hidden_layers + 1] = 3;
-        let parameters = Parameters::draw(&sizes, is_trainable.then_some(&waves), &mut rng);
+        let masks = Mask::all_at(&config.encoding, &waves, 0.0);
+        let sizes = masks.iter().map(|mask| {
+            let hidden = vec![config.width; config.n_hidden_layers];
+            [vec![mask.n_features()], hidden, vec![3]].concat()
+        });
+        let trained = is_trainable.then_some(&waves);
+        let parameters = Parameters::draw(&sizes.collect::<Vec<_>>(), trained, &mut rng);
 
-        let mask = Mask::at(&config.encoding, &waves, 0.0);
         let mut map = NetworkMap {
             frame: UnitFrame::of(Aabb::of(initial)),
             output_scale: config.output_scale,
             waves,
-            layers: Vec::new(),
+            networks: Vec::new(),
         };
-        parameters.copy_into(&mut map, &mask);
-        let inputs: Vec<[f32; 3]> = initial.iter().map(|p| map.to_input(p)).collect();
+        parameters.copy_into(&mut map, &masks);
+        let inputs = inputs(shapes, config.input);
         let mut pass = Pass::new(&inputs, &map, is_trainable);
         pass.forward(&map);
         Ok(Self {
@@ -71,10 +79,10 @@ impl Network {
             initial: initial.clone(),
             positions: initial.clone(),
             parameters,
-            adam: Adam::new(),
-            evaluation: Arc::new(Mutex::new(Evaluation { map, pass, mask })),
+            adam: Adam::new(masks.len()),
+            evaluation: Arc::new(Mutex::new(Evaluation { map, pass, masks })),
             progress: 0.0,
-            is_displaced: false,
+            is_displaced: config.input != NetworkInput::Initial,
         })
     }
 
@@ -90,9 +98,9 @@ impl Network {
 
     /// Evaluates the network at its present parameters and progress.
     fn evaluate(&mut self) {
-        let Evaluation { map, pass, mask } = &mut *lock(&self.evaluation);
-        *mask = Mask::at(&self.encoding, &map.waves, self.progress);
-        self.parameters.copy_into(map, mask);
+        let Evaluation { map, pass, masks } = &mut *lock(&self.evaluation);
+        *masks = Mask::all_at(&self.encoding, &map.waves, self.progress);
+        self.parameters.copy_into(map, masks);
         pass.forward(map);
         let moved = self
             .positions
@@ -103,6 +111,16 @@ impl Network {
             *x = x0 + map.offset(output);
         }
     }
+}
+
+/// The positions that the network sees, ±1 over the longest side of their shape.
+fn inputs(shapes: Shapes<'_>, input: NetworkInput) -> Vec<[f32; 3]> {
+    let seen = match input {
+        NetworkInput::Initial => shapes.initial,
+        NetworkInput::Rest => shapes.rest,
+    };
+    let frame = UnitFrame::of(Aabb::of(seen));
+    seen.iter().map(|p| to_input(&frame, p)).collect()
 }
 
 impl Parametrization for Network {
@@ -116,8 +134,9 @@ impl Parametrization for Network {
         learning_rate: f64,
     ) -> Result<(), DrapeError> {
         let stepped = self.gradients(gradient).and_then(|mut gradients| {
+            let masks = &lock(&self.evaluation).masks;
             self.adam
-                .step(&mut self.parameters, &mut gradients, learning_rate)
+                .step(&mut self.parameters, masks, &mut gradients, learning_rate)
         });
         stepped.map_err(|_| DrapeError::OutOfMemory)?;
         self.evaluate();

@@ -5,7 +5,6 @@ use faer::MatRef;
 use rayon::prelude::*;
 
 use super::block::{Block, BLOCK_SIZE};
-use super::encoding::Waves;
 use super::layer::{columns, pull_back_relu, Layer};
 use super::map::NetworkMap;
 
@@ -32,8 +31,8 @@ struct Lane {
 /// dL/dθ for every parameter of a [`NetworkMap`].
 #[derive(Clone, Debug)]
 pub(super) struct Gradients {
-    /// One per layer; the first layer's by its revealed inputs.
-    pub(super) layers: Vec<Layer>,
+    /// One per layer of each network that is not hidden; the first layer's by its revealed inputs.
+    pub(super) networks: Vec<Vec<Layer>>,
     /// One per row of the waves; empty where they do not train.
     pub(super) rows: Vec<[f32; 3]>,
 }
@@ -52,7 +51,7 @@ impl Pass {
         let n_lanes = (n_blocks / BLOCKS_PER_LANE).clamp(1, MAX_LANES);
         let mut blocks: Vec<Block> = points
             .chunks(points.len().div_ceil(n_blocks).max(1))
-            .map(|chunk| Block::new(chunk.to_vec(), &map.waves, &map.layers))
+            .map(|chunk| Block::new(chunk.to_vec(), &map.waves))
             .collect();
         for block in &mut blocks {
             if is_trainable {
@@ -64,7 +63,7 @@ impl Pass {
             .chunks(n_blocks.div_ceil(n_lanes))
             .map(|blocks| Lane {
                 blocks: blocks.to_vec(),
-                gradients: Gradients::zeros(map, is_trainable),
+                gradients: Gradients::new(map, is_trainable),
                 scratch: Scratch::default(),
             })
             .collect();
@@ -80,14 +79,14 @@ impl Pass {
         self.lanes.par_iter_mut().for_each(|lane| {
             for block in &mut lane.blocks {
                 if is_trainable {
-                    block.encode(&map.waves, map.layers[0].n_inputs());
+                    block.encode(&map.waves, map.n_revealed());
                 }
-                block.forward(&map.layers);
+                block.forward(&map.networks);
             }
         });
     }
 
-    /// What the last layer put out, point by point.
+    /// What the networks put out together, point by point.
     pub(super) fn outputs(&self) -> impl Iterator<Item = [f32; 3]> + '_ {
         self.lanes
             .iter()
@@ -133,37 +132,41 @@ impl Lane {
         for block in &self.blocks {
             let (part, others) = rest.split_at(3 * block.points.len());
             rest = others;
-            self.scratch.outer.clear();
-            self.scratch.outer.extend_from_slice(part);
-            block.backward(map, &mut self.gradients, &mut self.scratch);
+            for network in 0..map.networks.len() {
+                // The outputs are summed, so that each network has the gradient of the sum.
+                self.scratch.outer.clear();
+                self.scratch.outer.extend_from_slice(part);
+                block.backward(map, network, &mut self.gradients, &mut self.scratch);
+            }
         }
     }
 }
 
 impl Block {
-    /// Adds dL/dθ to `gradients`; `scratch.outer` holds dL/d(output).
-    fn backward(&self, map: &NetworkMap, gradients: &mut Gradients, scratch: &mut Scratch) {
-        for (l, layer) in map.layers.iter().enumerate().skip(1).rev() {
-            let input = &self.activations[l - 1];
-            layer.add_gradient(
-                &mut gradients.layers[l],
-                self.view(input, layer),
-                &scratch.outer,
-            );
+    /// Adds dL/dθ of one network to `gradients`; `scratch.outer` holds dL/d(output).
+    fn backward(
+        &self,
+        map: &NetworkMap,
+        network: usize,
+        gradients: &mut Gradients,
+        scratch: &mut Scratch,
+    ) {
+        let (layers, activations) = (&map.networks[network], &self.activations[network]);
+        let by_layer = &mut gradients.networks[network];
+        for (l, layer) in layers.iter().enumerate().skip(1).rev() {
+            let input = &activations[l - 1];
+            layer.add_gradient(&mut by_layer[l], self.view(input, layer), &scratch.outer);
             layer.pull_back(&scratch.outer, &mut scratch.inner);
             pull_back_relu(&mut scratch.inner, input);
             std::mem::swap(&mut scratch.outer, &mut scratch.inner);
         }
 
-        let first = &map.layers[0];
-        first.add_gradient(
-            &mut gradients.layers[0],
-            self.view(&self.features, first),
-            &scratch.outer,
-        );
+        let first = &layers[0];
+        let features = self.view(&self.features, first);
+        first.add_gradient(&mut by_layer[0], features, &scratch.outer);
         if !gradients.rows.is_empty() {
             first.pull_back(&scratch.outer, &mut scratch.inner);
-            self.add_row_gradient(&map.waves, &mut gradients.rows, &scratch.inner);
+            self.add_row_gradient(map.waves.gain, &mut gradients.rows, &mut scratch.inner);
         }
     }
 
@@ -171,44 +174,61 @@ impl Block {
         columns(input, self.points.len(), layer.n_inputs())
     }
 
-    /// d/d(row) of wave(gain · row · x) is slope · gain · x.
-    fn add_row_gradient(&self, waves: &Waves, rows: &mut [[f32; 3]], by_feature: &[f32]) {
-        let n_revealed = by_feature.len() / self.points.len();
-        let n_features = waves.n_features();
-        let per_row = waves.kind.n_features();
+    /// d/d(row) of wave(gain · row · x) is slope · gain · x; waves that train have one feature a row. `by_feature`, dL/d(feature),
+    /// becomes dL/d(row · x).
+    fn add_row_gradient(&self, gain: f32, rows: &mut [[f32; 3]], by_feature: &mut [f32]) {
+        let n = self.points.len();
+        let (n_revealed, n_features) = (by_feature.len() / n, self.features.len() / n);
+        let mut by_axis = [0, 1, 2].map(|_| vec![0.0; n_revealed - 3]);
         let by_point = by_feature
-            .chunks(n_revealed)
+            .chunks_mut(n_revealed)
             .zip(self.slopes.chunks(n_features));
         for (point, (by_feature, slopes)) in self.points.iter().zip(by_point) {
-            for k in 3..n_revealed {
-                let by_phase = by_feature[k] * slopes[k] * waves.gain;
-                for (sum, x) in rows[(k - 3) / per_row].iter_mut().zip(point) {
-                    *sum += by_phase * x;
-                }
+            let by_phase = &mut by_feature[3..];
+            for (d, slope) in by_phase.iter_mut().zip(&slopes[3..]) {
+                *d *= slope * gain;
             }
+            for (sums, &x) in by_axis.iter_mut().zip(point) {
+                sums.iter_mut()
+                    .zip(&*by_phase)
+                    .for_each(|(sum, d)| *sum += d * x);
+            }
+        }
+        for (axis, sums) in by_axis.iter().enumerate() {
+            rows.iter_mut()
+                .zip(sums)
+                .for_each(|(row, sum)| row[axis] += sum);
         }
     }
 }
 
 impl Gradients {
-    fn zeros(map: &NetworkMap, is_trainable: bool) -> Self {
+    fn new(map: &NetworkMap, is_trainable: bool) -> Self {
         let n_rows = if is_trainable {
             map.waves.rows.len()
         } else {
             0
         };
         Self {
-            layers: map.layers.clone(),
+            networks: Vec::new(),
             rows: vec![[0.0; 3]; n_rows],
         }
     }
 
-    /// Zero, for as many inputs as `map` reveals.
+    /// Zero, for as many networks and inputs as `map` reveals.
     fn reset(&mut self, map: &NetworkMap) {
-        for (gradient, layer) in self.layers.iter_mut().zip(&map.layers) {
-            gradient.weight.clear();
-            gradient.weight.resize(layer.weight.len(), 0.0);
-            gradient.bias.fill(0.0);
+        self.networks.resize_with(map.networks.len(), Vec::new);
+        for (gradients, layers) in self.networks.iter_mut().zip(&map.networks) {
+            gradients.resize_with(layers.len(), Layer::default);
+            for (gradient, layer) in gradients.iter_mut().zip(layers) {
+                for (sum, like) in [
+                    (&mut gradient.weight, &layer.weight),
+                    (&mut gradient.bias, &layer.bias),
+                ] {
+                    sum.clear();
+                    sum.resize(like.len(), 0.0);
+                }
+            }
         }
         self.rows.fill([0.0; 3]);
     }
@@ -216,7 +236,8 @@ impl Gradients {
     fn add(&mut self, other: &Self) {
         let add =
             |sum: &mut [f32], part: &[f32]| sum.iter_mut().zip(part).for_each(|(s, p)| *s += p);
-        for (sum, part) in self.layers.iter_mut().zip(&other.layers) {
+        let layers = self.networks.iter_mut().flatten();
+        for (sum, part) in layers.zip(other.networks.iter().flatten()) {
             add(&mut sum.weight, &part.weight);
             add(&mut sum.bias, &part.bias);
         }

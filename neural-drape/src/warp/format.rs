@@ -6,8 +6,8 @@
 //! | 4 | version, u32 |
 //! | … | extension: origin, constant, linear part by rows (15 f64), then a list of kernels (6 f64 each) |
 //! | … | surface: lists of rest points (3 f64), residuals (3 f64) and triangles (3 u32) |
-//! | 1 | 1 if a network follows, else 0 |
-//! | … | network: frame and output scale (5 f64), waves (kind u8, gain f32, list of rows of 3 f32), list of layers (each a list of biases and a list of weights, f32) |
+//! | 1 | how many networks follow, whose offsets are summed |
+//! | … | network: frame and output scale (5 f64), waves (kind u8, gain f32, list of rows of 3 f32), for each a list of layers (each a list of biases and a list of weights, f32); nothing where there is none |
 //! | 8 | FNV-1a hash of all bytes before |
 //!
 //! A list is its length as u32, then its entries.
@@ -76,7 +76,9 @@ pub(super) fn encode(
     put_list(&mut bytes, &surface.triangles, |bytes, t| {
         bytes.extend(t.iter().flat_map(|v| v.to_le_bytes()));
     });
-    bytes.push(u8::from(network.is_some()));
+    let n_networks = network.map_or(0, |network| network.networks.len());
+    // There are at most 255 (`NetworkConfig::settings`).
+    bytes.push(u8::try_from(n_networks).unwrap_or(u8::MAX));
     if let Some(network) = network {
         put_network(&mut bytes, network);
     }
@@ -94,10 +96,12 @@ fn put_network(bytes: &mut Vec<u8>, network: &NetworkMap) {
     });
     put_f32(bytes, &[network.waves.gain]);
     put_list(bytes, &network.waves.rows, |bytes, row| put_f32(bytes, row));
-    put_list(bytes, &network.layers, |bytes, layer| {
-        put_list(bytes, &layer.bias, |bytes, b| put_f32(bytes, &[*b]));
-        put_list(bytes, &layer.weight, |bytes, w| put_f32(bytes, &[*w]));
-    });
+    for layers in &network.networks {
+        put_list(bytes, layers, |bytes, layer| {
+            put_list(bytes, &layer.bias, |bytes, b| put_f32(bytes, &[*b]));
+            put_list(bytes, &layer.weight, |bytes, w| put_f32(bytes, &[*w]));
+        });
+    }
 }
 
 fn put_f64<'a>(bytes: &mut Vec<u8>, values: impl Iterator<Item = &'a f64>) {
@@ -146,8 +150,7 @@ pub(super) fn decode(bytes: &[u8]) -> Result<Parts, FormatError> {
     let surface = reader.surface()?;
     let network = match reader.u8()? {
         0 => None,
-        1 => Some(reader.network()?),
-        _ => return reader.damaged("neither with nor without a network"),
+        n_networks => Some(reader.network(n_networks)?),
     };
     if reader.offset == content {
         Ok((extension, network, surface))
@@ -276,7 +279,8 @@ impl Reader<'_> {
         })
     }
 
-    fn network(&mut self) -> Result<NetworkMap, FormatError> {
+    /// A map with this many networks.
+    fn network(&mut self, n_networks: u8) -> Result<NetworkMap, FormatError> {
         let frame = UnitFrame {
             center: self.point()?,
             scale: self.f64()?,
@@ -289,17 +293,19 @@ impl Reader<'_> {
         };
         let gain = self.f32()?;
         let rows = self.list(12, |r| Ok([r.f32()?, r.f32()?, r.f32()?]))?;
-        let layers = self.list(8, |r| {
+        let layer = |r: &mut Self| {
             Ok(Layer {
                 bias: r.list(4, Self::f32)?,
                 weight: r.list(4, Self::f32)?,
             })
-        })?;
+        };
+        let networks = (0..n_networks).map(|_| self.list(8, layer));
+        let networks = networks.collect::<Result<Vec<_>, _>>()?;
         let network = NetworkMap {
             frame,
             output_scale,
             waves: Waves { rows, gain, kind },
-            layers,
+            networks,
         };
         if network.is_consistent() {
             Ok(network)

@@ -11,7 +11,7 @@ use super::format::{decode, encode, FormatError};
 use super::*;
 use crate::network::{Layer, NetworkMap, WaveKind, Waves};
 #[cfg(feature = "network")]
-use crate::network::{Network, NetworkConfig};
+use crate::network::{Network, NetworkConfig, Shapes};
 #[cfg(feature = "network")]
 use crate::Parametrization;
 
@@ -44,7 +44,8 @@ fn network_warp(config: &NetworkConfig) -> (Warp, Positions, Positions) {
     let (mesh, rest) = shapes::icosphere(3).into_halfedge().unwrap();
     let initial = rest.map(|p| p + Vector3::new(0.0, 0.2 * p.x, 5.0));
     let frame = UnitFrame::of(Aabb::of(&initial));
-    let mut network = Network::new(&initial.map(|p| frame.to_unit(p)), config, 0).unwrap();
+    let x0 = initial.map(|p| frame.to_unit(p));
+    let mut network = Network::new(Shapes::at_rest(&x0), config, 0).unwrap();
     network.set_progress(1.0).unwrap();
     let gradient = VertexData::from_iter(rest.iter().map(|p| p.coords * p.z));
     for _ in 0..10 {
@@ -164,7 +165,10 @@ fn warp_with_map() -> Warp {
     let map = NetworkMap {
         frame: UnitFrame::of(Aabb::of(&rest)),
         output_scale: 0.5,
-        layers: vec![layer(waves.n_features(), 2), layer(2, 3)],
+        networks: vec![
+            vec![layer(waves.n_features(), 2), layer(2, 3)],
+            vec![layer(5, 4), layer(4, 3)],
+        ],
         waves,
     };
     Warp::from_parts(warp.extension, Some(map), warp.surface)

@@ -3,6 +3,7 @@
 mod finish;
 mod inputs;
 mod landmarks;
+mod paper;
 mod part;
 mod regions;
 mod resume;

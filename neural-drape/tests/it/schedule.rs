@@ -106,7 +106,8 @@ fn lambda_of_the_standard_preset_is_1_while_structure_leads_and_0_3_after() {
     assert_eq!([330, 999].map(lambda), [Some(0.3); 2]);
 }
 
-/// Lengths count 20 times and squared lengths 400 times what they do in the authors' frame.
+/// Lengths count 20 times and squared lengths 400 times what they do in the authors' frame. There is no term of normals: the
+/// paper has none.
 #[test]
 fn the_weights_of_the_paper_are_these() {
     let stages = DrapeConfig::paper().stages;
@@ -115,7 +116,7 @@ fn the_weights_of_the_paper_are_these() {
         let expected = [
             20.0,
             0.0,
-            0.2,
+            0.0,
             400.0 * landmark,
             lambda,
             lambda,
@@ -128,6 +129,27 @@ fn the_weights_of_the_paper_are_these() {
         ];
         assert_weights(&stage.from, expected);
         assert_weights(&stage.to, expected);
+    }
+}
+
+/// Beside the paper's, normals agree by 0.2, and faces keep from flipping by λ, which fades to 0 within each stage of 1000: to
+/// a half in the second, of which 500 are run.
+#[test]
+fn the_weights_of_the_authors_program_are_these() {
+    let stages = DrapeConfig::authors().stages;
+    let n_iterations: Vec<usize> = stages.iter().map(|s| s.n_iterations).collect();
+    assert_eq!(n_iterations, [1000, 500]);
+    for (stage, landmark, lambda, flips) in [
+        (&stages[0], 100.0, 1.0, [1.0, 0.0]),
+        (&stages[1], 10.0, 0.2, [0.2, 0.1]),
+    ] {
+        for (weights, flip) in [&stage.from, &stage.to].into_iter().zip(flips) {
+            let landmark = 400.0 * landmark;
+            let expected = [
+                20.0, 0.0, 0.2, landmark, lambda, lambda, 0.1, flip, 0.0, 0.0, 0.0, 0.0,
+            ];
+            assert_weights(weights, expected);
+        }
     }
 }
 

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use mesh_core::{
-    shapes, Point3, PolygonSoup, Positions, TargetSurface, TriangleSoup, Triangulation,
+    shapes, Landmark, Point3, PolygonSoup, Positions, TargetSurface, TriangleSoup, Triangulation,
 };
 use neural_drape::{Drape, DrapeConfig, DrapeError, DrapeInput, ParametrizationConfig, StepReport};
 
@@ -12,6 +12,7 @@ pub(crate) struct Pair {
     pub(crate) rest: Arc<Positions>,
     pub(crate) initial: Positions,
     pub(crate) target: Arc<dyn TargetSurface>,
+    pub(crate) landmarks: Vec<Landmark>,
 }
 
 /// Half axes of the target.
@@ -35,6 +36,7 @@ impl Pair {
             initial: rest.map(|p| Point3::from(p.coords * 0.8)),
             rest: Arc::new(rest),
             target: Arc::new(TriangleSoup::new(ellipsoid).expect("an ellipsoid is a target")),
+            landmarks: Vec::new(),
         }
     }
 
@@ -44,7 +46,7 @@ impl Pair {
             rest: &self.rest,
             initial: &self.initial,
             target: &self.target,
-            landmarks: &[],
+            landmarks: &self.landmarks,
         }
     }
 }

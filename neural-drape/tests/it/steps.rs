@@ -12,9 +12,11 @@ use crate::setup::{on_ellipsoid, short, Pair};
 
 /// One call of [`Parametrization::descend`].
 #[derive(Clone)]
-struct Descended {
-    gradient: Vec<Vector3>,
-    rate: f64,
+pub(crate) struct Descended {
+    pub(crate) gradient: Vec<Vector3>,
+    pub(crate) rate: f64,
+    /// What [`Parametrization::set_progress`] said last.
+    pub(crate) progress: f64,
 }
 
 /// A parametrization that moves by `shift` whenever it is to descend, and remembers the gradients.
@@ -22,6 +24,7 @@ struct Recorder {
     positions: Positions,
     shift: Vector3,
     log: Arc<Mutex<Vec<Descended>>>,
+    progress: f64,
 }
 
 impl Parametrization for Recorder {
@@ -37,12 +40,14 @@ impl Parametrization for Recorder {
         self.log.lock().expect("nobody panicked").push(Descended {
             gradient: gradient.as_slice().to_vec(),
             rate: learning_rate,
+            progress: self.progress,
         });
         self.positions.iter_mut().for_each(|p| *p += self.shift);
         Ok(())
     }
 
-    fn set_progress(&mut self, _progress: f64) -> Result<(), DrapeError> {
+    fn set_progress(&mut self, progress: f64) -> Result<(), DrapeError> {
+        self.progress = progress;
         Ok(())
     }
 
@@ -61,13 +66,18 @@ impl Parametrization for Recorder {
 }
 
 /// What a whole run asks for, and its reports.
-fn recorded(pair: &Pair, config: DrapeConfig, shift: Vector3) -> (Vec<Descended>, Vec<StepReport>) {
+pub(crate) fn recorded(
+    pair: &Pair,
+    config: DrapeConfig,
+    shift: Vector3,
+) -> (Vec<Descended>, Vec<StepReport>) {
     let log = Arc::new(Mutex::new(Vec::new()));
     let recorder = |initial: &Positions| {
         Ok(Box::new(Recorder {
             positions: initial.clone(),
             shift,
             log: Arc::clone(&log),
+            progress: f64::NAN,
         }) as Box<dyn Parametrization>)
     };
     let mut drape =
@@ -80,7 +90,7 @@ fn recorded(pair: &Pair, config: DrapeConfig, shift: Vector3) -> (Vec<Descended>
     (log, reports)
 }
 
-fn norm(gradient: &[Vector3]) -> f64 {
+pub(crate) fn norm(gradient: &[Vector3]) -> f64 {
     gradient
         .iter()
         .map(Vector3::norm_squared)
@@ -89,11 +99,21 @@ fn norm(gradient: &[Vector3]) -> f64 {
 }
 
 /// Only these weights, in one stage.
-fn of_weights(weights: Weights, n_iterations: usize) -> DrapeConfig {
-    let mut config = short("standard", n_iterations);
-    config.stages[0].from = weights;
-    config.stages[0].to = weights;
-    config
+pub(crate) fn of_weights(weights: Weights, n_iterations: usize) -> DrapeConfig {
+    with_only(short("standard", n_iterations), weights, n_iterations)
+}
+
+/// A run of one stage with these weights alone.
+pub(crate) fn with_only(config: DrapeConfig, weights: Weights, n_iterations: usize) -> DrapeConfig {
+    let stage = Stage {
+        n_iterations,
+        from: weights,
+        to: weights,
+    };
+    DrapeConfig {
+        stages: vec![stage],
+        ..config
+    }
 }
 
 #[test]
@@ -223,6 +243,7 @@ fn a_landmark_is_a_term_of_the_distance() {
             positions: initial.clone(),
             shift: Vector3::zeros(),
             log: Arc::clone(&log),
+            progress: f64::NAN,
         }) as Box<dyn Parametrization>)
     };
     let mut drape = Drape::with_parametrization(pair.input(), config, recorder).unwrap();
@@ -243,6 +264,7 @@ fn a_parametrization_of_another_mesh_is_refused() {
             positions: Positions::from(shapes::icosphere(0).positions),
             shift: Vector3::zeros(),
             log: Arc::default(),
+            progress: f64::NAN,
         }) as Box<dyn Parametrization>)
     };
     let answer = Drape::with_parametrization(pair.input(), short("standard", 1), recorder);

@@ -98,10 +98,22 @@ pub fn glb(bytes: &[u8]) -> Vec<u8> {
 }
 
 #[cfg(feature = "drape")]
+mod command;
+#[cfg(feature = "drape")]
 mod drape;
 #[cfg(feature = "drape")]
 mod whole;
 #[cfg(feature = "drape")]
+pub use command::Place;
+#[cfg(feature = "drape")]
 pub use drape::{load_warp, read_landmarks, read_settings};
 #[cfg(feature = "drape")]
 pub use whole::drape_both_ways;
+
+/// The folder that this process works in.
+#[cfg(feature = "drape")]
+pub fn place() -> &'static Place {
+    static PLACE: std::sync::OnceLock<Place> = std::sync::OnceLock::new();
+    let folder = || std::env::temp_dir().join(format!("drape-fuzz-{}", std::process::id()));
+    PLACE.get_or_init(|| Place::new(&folder()))
+}
