@@ -29,8 +29,9 @@ impl DrapeConfig {
         let contact = self.contact.iter();
         settings.extend(contact.flat_map(|contact| {
             [
-                Setting::share("contact.part_at", contact.part_at),
-                Setting::share("contact.guard_from", contact.guard_from),
+                Setting::share("contact.from", contact.from),
+                Setting::not_negative("contact.weight", contact.weight),
+                Setting::not_negative("contact.gap", contact.gap),
             ]
         }));
         settings.extend(self.learning_rate.settings());

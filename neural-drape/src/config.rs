@@ -4,7 +4,7 @@ use mesh_core::Triangulation;
 use mesh_loss::{Overlap, SamplingConfig};
 use serde::{Deserialize, Serialize};
 
-use crate::guard::ContactConfig;
+use crate::contact::ContactConfig;
 use crate::network::{NetworkConfig, Shapes};
 use crate::schedule::{LearningRate, Stage};
 use crate::vertices::{Vertices, VerticesConfig};

@@ -54,7 +54,7 @@ mod config;
 mod coverage;
 mod drape;
 mod error;
-mod guard;
+mod contact;
 mod input;
 pub mod network;
 mod objective;
@@ -77,7 +77,7 @@ pub use config::{
 };
 pub use drape::{Drape, StepReport};
 pub use error::DrapeError;
-pub use guard::ContactConfig;
+pub use contact::ContactConfig;
 pub use input::DrapeInput;
 pub use objective::TermReport;
 pub use parametrization::Parametrization;

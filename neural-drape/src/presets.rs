@@ -111,7 +111,6 @@ impl DrapeConfig {
                 double_every: None,
                 ..standard.sampling
             },
-            // Vertices that are held back are no longer where the network alone has them.
             contact: None,
             ..standard
         }

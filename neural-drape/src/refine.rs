@@ -19,7 +19,7 @@ impl DrapeConfig {
             }];
         }
         config.contact = self.contact.map(|contact| ContactConfig {
-            part_at: 0.0,
+            from: 0.0,
             ..contact
         });
         config.learning_rate = LearningRate {

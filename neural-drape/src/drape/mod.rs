@@ -11,9 +11,9 @@ use mesh_core::{
 };
 use mesh_loss::{Beyond, Matches, Overlap, SurfaceMatcher};
 
+use crate::contact::Apart;
 use crate::config::{Descent, DrapeConfig};
 use crate::coverage::{mark_uncovered, Pairing, Target, FAR_BEYOND, N_BEYOND};
-use crate::guard::{ground, Guard, PERIOD};
 use crate::input::check_length;
 use crate::network::{NetworkMap, Shapes};
 use crate::objective::{self, DistanceLoss, StructuralLoss, TermReport};
@@ -55,7 +55,7 @@ pub struct Drape {
     initial: Positions,
     is_uncovered: VertexData<bool>,
     guidance: Guidance,
-    guard: Option<Guard>,
+    apart: Option<Apart>,
     iteration: usize,
     n_iterations: usize,
     stage_starts: Vec<usize>,
@@ -129,12 +129,12 @@ impl Drape {
             pairing,
             is_uncovered,
             guidance,
-            guard: None,
             frame,
             parametrization,
             landmarks: Vec::new(),
             matcher,
             structure: StructuralLoss::new(input.triangulation, input.rest, &initial, &config),
+            apart: config.contact.map(|contact| Apart::new(contact, input.triangulation, input.rest)),
             triangulation: Arc::clone(input.triangulation),
             rest: Arc::clone(input.rest),
             iteration: 0,
@@ -163,7 +163,6 @@ impl Drape {
             .config
             .learning_rate
             .at(self.iteration, self.n_iterations);
-        let before = self.guarded();
         let progress = self.iteration as f64 / self.n_iterations as f64;
         self.profile.time("preconditioner", || {
             self.parametrization.set_progress(progress)
@@ -196,7 +195,6 @@ impl Drape {
 
         self.iteration += 1;
         self.settle()?;
-        self.hold_back(before.as_ref());
         Ok(Some(StepReport {
             iteration: self.iteration - 1,
             n_iterations: self.n_iterations,
@@ -210,56 +208,6 @@ impl Drape {
         self.parametrization
             .positions()
             .map(|p| self.frame.from_unit(p))
-    }
-
-    /// Where the vertices are before a step that must not drive the surface through itself; none as long as steps may.
-    /// What crosses is taken out when the coarse fit stands, and again when steps are held back from then on.
-    fn guarded(&mut self) -> Option<Positions> {
-        let contact = self.config.contact?;
-        let [parted, first] = [contact.part_at, contact.guard_from]
-            .map(|share| (share * self.n_iterations as f64) as usize);
-        if self.iteration == parted || self.iteration == first {
-            self.untangle();
-        }
-        if self.iteration < first {
-            return None;
-        }
-        let x = self.parametrization.positions();
-        if self.guard.is_none() || (self.iteration - first).is_multiple_of(PERIOD) {
-            let ground = ground(&self.triangulation, &self.rest);
-            let guard = self.profile.time("contact", || Guard::new(ground, x));
-            self.guard = Some(guard);
-        }
-        Some(x.clone())
-    }
-
-    /// Takes out what crosses now.
-    fn untangle(&mut self) {
-        let held = self.held();
-        let x = self.parametrization.positions();
-        let (triangulation, rest) = (&self.triangulation, &self.rest);
-        let untangled = self.profile.time("contact", || {
-            crate::repair::untangled(triangulation, rest, x, &held)
-        });
-        let moves: VertexData<Vector3> = untangled.iter().zip(x).map(|(a, b)| a - b).collect();
-        if moves.iter().any(|m| *m != Vector3::zeros()) {
-            self.parametrization.displace(&moves);
-        }
-    }
-
-    /// Takes a step back where it drove the surface through itself.
-    fn hold_back(&mut self, before: Option<&Positions>) {
-        let (Some(guard), Some(before)) = (&mut self.guard, before) else {
-            return;
-        };
-        let x = self.parametrization.positions();
-        let ground = ground(&self.triangulation, &self.rest);
-        let moves = self
-            .profile
-            .time("contact", || guard.held_back(ground, before, x));
-        if let Some(moves) = moves {
-            self.parametrization.displace(&moves);
-        }
     }
 
     /// Puts bodies and carried pieces where they belong.
@@ -303,7 +251,8 @@ impl Drape {
         let positions = self.positions();
         if self.config.repair {
             let held = self.held();
-            crate::repair(&self.triangulation, &self.rest, &positions, &held)
+            let target = self.matcher.target().as_ref();
+            crate::repair(&self.triangulation, &self.rest, &positions, &held, Some(target))
         } else {
             let defects = crate::repair::defects(&self.triangulation, &self.rest, &positions);
             Repair {
@@ -384,8 +333,14 @@ impl Drape {
 
     /// Adds λ dL_s/dx at the present positions (Eq. 3), and the penalty of Eq. 4.
     fn add_structural_loss(&mut self, weights: &Weights) -> Vec<TermReport> {
-        let terms = self.structure.terms(weights);
         let x = self.parametrization.positions();
+        if let Some(apart) = &mut self.apart {
+            let (done, all) = (self.iteration, self.n_iterations);
+            self.profile
+                .time("contact search", || apart.update(done, all, x));
+        }
+        let mut terms = self.structure.terms(weights).to_vec();
+        terms.extend(self.apart.as_ref().map(Apart::term));
         objective::accumulate(&terms, x, &mut self.gradient, &mut self.profile)
     }
 

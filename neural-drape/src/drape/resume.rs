@@ -3,7 +3,6 @@
 use mesh_loss::HardCorners;
 
 use super::Drape;
-use crate::guard::{ground, Guard};
 use crate::setting::MAX_COUNT;
 use crate::{DrapeError, DrapeState};
 
@@ -20,9 +19,8 @@ impl Drape {
             state.points(self.structure.anchored_at());
             self.guidance.save(state);
             self.parametrization.save(state);
-            state.count(usize::from(self.guard.is_some()));
-            if let Some(guard) = &self.guard {
-                guard.save(state);
+            if let Some(apart) = &self.apart {
+                apart.save(state);
             }
         })
     }
@@ -53,14 +51,9 @@ impl Drape {
         self.structure.anchor(&self.triangulation, &anchor);
         self.guidance.restore(&mut reader)?;
         self.parametrization.restore(&mut reader)?;
-        self.guard = match reader.count()? {
-            0 => None,
-            _ => {
-                let ground = ground(&self.triangulation, &self.rest);
-                let x = self.parametrization.positions();
-                Some(Guard::restore(ground, x, &mut reader)?)
-            }
-        };
+        if let Some(apart) = &mut self.apart {
+            apart.restore(self.gradient.len(), &mut reader)?;
+        }
         reader.finish()
     }
 }

@@ -4,12 +4,12 @@ mod judge;
 
 use std::sync::Arc;
 
-use mesh_core::{Point3, Positions, Triangulation, UnitFrame, Vector3, VertexData, VertexId};
+use mesh_core::{Point3, Positions, TargetSurface, Triangulation, UnitFrame, Vector3, VertexData, VertexId};
 use mesh_loss::{FoldBarrier, LocalShape};
 
 pub(crate) use judge::{Broken, Judge, Reach, Surroundings};
 
-use crate::untangle::{crossings, untangle};
+use crate::untangle::{crossings, untangle, Fit};
 
 /// A patch grows up to this many rings around what is broken.
 const MAX_RINGS: usize = 8;
@@ -68,18 +68,22 @@ impl Defects {
 ///
 /// A patch that does not get better by a small motion stays as it was. All else stays, to the bit.
 ///
-/// The vertices of `held`, such as those of landmarks, stay where they are.
+/// The vertices of `held`, such as those of landmarks, stay where they are. Where a target is given, in the same coordinates,
+/// no crossing is taken out at the cost of the fit.
 pub fn repair(
     triangulation: &Arc<Triangulation>,
     rest: &Positions,
     x: &Positions,
     held: &[VertexId],
+    target: Option<&dyn TargetSurface>,
 ) -> Repair {
     let mut held = held.to_vec();
     held.sort_unstable();
     let judge = Judge::new(triangulation, rest);
     let unfolded = unfolded(&judge, triangulation, x, &held);
-    let untangled = untangle(&judge, unfolded, &held);
+    let size = UnitFrame::principal(x.as_slice()).scale;
+    let fit = target.map(|target| Fit { target, size });
+    let untangled = untangle(&judge, unfolded, &held, fit);
     Repair {
         before: Defects {
             crossings: crossings(triangulation, rest, x),
@@ -91,20 +95,6 @@ pub fn repair(
         },
         positions: untangled.positions,
     }
-}
-
-/// `x` without the crossings that can be taken out, whatever is folded.
-pub(crate) fn untangled(
-    triangulation: &Arc<Triangulation>,
-    rest: &Positions,
-    x: &Positions,
-    held: &[VertexId],
-) -> Positions {
-    let mut held = held.to_vec();
-    held.sort_unstable();
-    let judge = Judge::new(triangulation, rest);
-    let broken = judge.broken(x);
-    untangle(&judge, (x.clone(), broken), &held).positions
 }
 
 /// Positions without the folds and skinny triangles that could be taken out, and what of them is left.
@@ -286,7 +276,7 @@ mod tests {
     fn a_shape_without_defects_stays_to_the_bit() {
         let (triangulation, rest) = sphere(8);
         let x = rest.map(|p| p * 3.0);
-        let repair = repair(&triangulation, &rest, &x, &[]);
+        let repair = repair(&triangulation, &rest, &x, &[], None);
         assert_eq!(repair.positions, x);
         assert!(repair.before.is_empty() && repair.left.is_empty());
     }
@@ -299,7 +289,7 @@ mod tests {
         let [a, b] = [v, w].map(|v| triangulation.edges().iter().find(|e| e[0] == v).unwrap()[1]);
         x[v] = x[v] + (x[a] - x[v]) * 1.6;
         x[w] = x[w] + (x[b] - x[w]) * 1.6;
-        let repair = repair(&triangulation, &rest, &x, &[]);
+        let repair = repair(&triangulation, &rest, &x, &[], None);
         assert!(!repair.before.is_empty());
         assert!(repair.left.is_empty(), "{:?}", repair.left);
         let true_place = rest.map(|p| p * 2.0);
@@ -318,7 +308,7 @@ mod tests {
         for [v, w] in triangulation.edges().iter().copied().step_by(4001) {
             (x[v], x[w]) = (x[w], x[v]);
         }
-        let repair = repair(&triangulation, &rest, &x, &[]);
+        let repair = repair(&triangulation, &rest, &x, &[], None);
         assert!(!repair.before.is_empty());
         assert!(repair.left.is_empty(), "{:?}", repair.left);
     }

@@ -1,14 +1,11 @@
 //! Pairs of triangles that run through each other and did not at rest.
 
-use mesh_core::measure::triangle_normal;
-use mesh_core::{Aabb, Point3, Positions, TriangleBvh, Triangulation, Vector3, VertexId};
+use mesh_core::{Aabb, Point3, Positions, TriangleBvh, Triangulation, VertexId};
 use rayon::prelude::*;
 use robust::{orient3d, Coord3D};
 
 /// So many triangles are one piece of parallel work.
 const CHUNK: usize = 128;
-/// Triangles face each other when the cosine between their normals is below this.
-const FACING: f64 = 0.2;
 
 /// A surface that may run through itself only where it does at rest.
 #[derive(Clone, Copy)]
@@ -98,33 +95,6 @@ impl Detector {
         pairs.sort_unstable();
         pairs.dedup();
         pairs
-    }
-
-    /// The triangles that another, without a common corner and facing it, is nearer to than `reach`, at the most: what may
-    /// come to cross soon.
-    pub(crate) fn close(&self, ground: Ground<'_>, x: &Positions, reach: f64) -> Vec<u32> {
-        let triangles = ground.triangulation.triangles();
-        let normals: Vec<Vector3> = self
-            .rows
-            .par_iter()
-            .map(|&row| triangle_normal(ground.corners(row, x)).unwrap_or_default())
-            .collect();
-        let is_close = |&(k, &row): &(usize, &u32)| {
-            let mut bounds = Aabb::of(&ground.corners(row, x));
-            bounds.min.iter_mut().for_each(|c| *c -= reach);
-            bounds.max.iter_mut().for_each(|c| *c += reach);
-            let mut found = false;
-            self.bvh.for_each_overlapping(&bounds, |other| {
-                let other = other as usize;
-                let corners = &triangles[self.rows[other] as usize];
-                found = found
-                    || normals[k].dot(&normals[other]) < FACING
-                        && !triangles[row as usize].iter().any(|v| corners.contains(v));
-            });
-            found
-        };
-        let rows = self.rows.par_iter().enumerate().with_min_len(CHUNK);
-        rows.filter(is_close).map(|(_, &row)| row).collect()
     }
 }
 

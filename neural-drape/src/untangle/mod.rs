@@ -2,6 +2,7 @@
 
 mod carry;
 mod crossing;
+mod fit;
 mod push;
 
 use mesh_core::{Aabb, Positions, TriangleBvh, Triangulation, UnionFind, UnitFrame, VertexId};
@@ -11,6 +12,7 @@ use crate::repair::{grown, Broken, Judge, Reach, Surroundings};
 use carry::Carrier;
 use crossing::triangles_at;
 pub(crate) use crossing::{Detector, Ground};
+pub(crate) use fit::Fit;
 use push::push_apart;
 
 /// A patch grows to so many rings around what crosses, one size after the other.
@@ -69,6 +71,7 @@ pub(crate) fn untangle(
     judge: &Judge<'_>,
     (x, broken): (Positions, Broken),
     held: &[VertexId],
+    fit: Option<Fit<'_>>,
 ) -> Untangled {
     let ground = Ground {
         triangulation: judge.triangulation(),
@@ -82,6 +85,7 @@ pub(crate) fn untangle(
         let untangler = Untangler {
             ground,
             held,
+            fit,
             detector,
             shape: LocalShape::new(triangulation, ground.rest),
             carrier: Carrier::new(triangulation, ground.rest),
@@ -135,6 +139,7 @@ fn is_at(triangulation: &Triangulation, patch: &[VertexId], pair: &[u32; 2]) -> 
 struct Untangler<'a> {
     ground: Ground<'a>,
     held: &'a [VertexId],
+    fit: Option<Fit<'a>>,
     /// Of all triangles.
     detector: Detector,
     shape: LocalShape,
@@ -164,7 +169,9 @@ impl Untangler<'_> {
                 case.give_back(&mut moved);
                 let far = case.free.iter().map(|&v| (moved[v] - x[v]).norm());
                 let far = far.fold(0.0, f64::max);
-                if far <= best.as_ref().map_or(self.reach, |(least, _)| *least) {
+                let fits = |fit: &Fit<'_>| fit.holds(self.ground, &case.rows, [x, &moved]);
+                let is_less = far <= best.as_ref().map_or(self.reach, |(least, _)| *least);
+                if is_less && self.fit.as_ref().is_none_or(fits) {
                     best = Some((far, moved));
                 }
             }
