@@ -19,8 +19,10 @@ const FACING_OF_FAR: f64 = 0.5;
 const FAR: f64 = 0.08;
 /// A triangle whose nearest point is farther than this, as a cosine, from straight before or behind it says nothing.
 const STRAIGHT: f64 = 0.5;
-/// At rest, the way between them says which side they belong on where its cosine with their normals is at least this.
-const CLEAR: f64 = 0.3;
+/// At rest, the way between them says which side they belong on where the difference of their normals along it is at least this.
+const CLEAR: f64 = 1.2;
+/// A fold is looked for over so many edges.
+const RINGS: usize = 5;
 /// No gap is larger than this share of the distance at rest.
 const OF_REST: f64 = 0.5;
 /// So many vertices are one piece of parallel work.
@@ -48,6 +50,36 @@ struct Now<'a> {
     scale: f64,
     gap: f64,
     reach: f64,
+}
+
+/// A vertex and a triangle whose side is not known yet.
+struct Candidate {
+    vertex: VertexId,
+    triangle: [VertexId; 3],
+    /// How far apart at rest, in its lengths.
+    apart: f64,
+    /// How far apart now.
+    distance: f64,
+}
+
+impl Candidate {
+    fn pair(&self, side: f64, now: &Now<'_>) -> ContactPair {
+        ContactPair {
+            vertex: self.vertex,
+            triangle: self.triangle,
+            side,
+            gap: now.gap.min(OF_REST * self.apart * now.scale),
+            share: 0.0,
+        }
+    }
+}
+
+fn knob(name: &str, value: f64) -> f64 {
+    use std::collections::BTreeMap;
+    use std::sync::OnceLock;
+    static ALL: OnceLock<BTreeMap<String, f64>> = OnceLock::new();
+    let all = ALL.get_or_init(|| std::env::vars().filter_map(|(k, v)| Some((k.strip_prefix("K_")?.to_owned(), v.parse().ok()?))).collect());
+    all.get(name).copied().unwrap_or(value)
 }
 
 impl ContactSearch {
@@ -100,55 +132,53 @@ impl ContactSearch {
 
     fn near_vertex(&self, v: VertexId, now: &Now<'_>) -> [Option<ContactPair>; 2] {
         let mut nearest: [Option<(f64, u32, ContactPair)>; 2] = [None, None];
-        self.bvh
-            .for_each_overlapping(&around(&now.x[v], now.reach), |row| {
-                let Some((distance, pair)) = self.pair(v, row, now) else {
-                    return;
-                };
-                let best = &mut nearest[usize::from(pair.side < 0.0)];
-                // Equally near ones are told apart by their rows, whatever order they come in.
-                let is_nearer = best.is_none_or(|(least, at, _)| (distance, row) < (least, at));
-                if is_nearer {
-                    *best = Some((distance, row, pair));
-                }
-            });
+        let mut tree = None;
+        let bounds = around(&now.x[v], now.reach);
+        self.bvh.for_each_overlapping(&bounds, |row| {
+            let Some(candidate) = self.candidate(v, row, now) else {
+                return;
+            };
+            let Some(side) = self.side(&candidate, now, &mut tree) else {
+                return;
+            };
+            let best = &mut nearest[usize::from(side < 0.0)];
+            // Equally near ones are told apart by their rows, whatever order they come in.
+            let (distance, pair) = (candidate.distance, candidate.pair(side, now));
+            if best.is_none_or(|(least, at, _)| (distance, row) < (least, at)) {
+                *best = Some((distance, row, pair));
+            }
+        });
         nearest.map(|best| best.map(|(_, _, pair)| pair))
     }
 
-    /// The pair of a vertex and a triangle, and how far apart they are; none where they are neighbours, too far or do not
-    /// face each other.
-    fn pair(&self, v: VertexId, row: u32, now: &Now<'_>) -> Option<(f64, ContactPair)> {
+    /// A vertex and a triangle that face each other; none where it is a corner, too far or turned away.
+    fn candidate(&self, vertex: VertexId, row: u32, now: &Now<'_>) -> Option<Candidate> {
         let triangle = self.triangulation.triangles()[row as usize];
-        let around = self.triangulation.vertex_neighbours(v);
-        let is_neighbour = |w: &VertexId| *w == v || around.binary_search(w).is_ok();
-        if triangle.iter().any(is_neighbour) {
+        if triangle.contains(&vertex) {
+            return None;
+        }
+        if knob("RING", 0.0) > 0.0 && triangle.iter().any(|w| self.triangulation.vertex_neighbours(vertex).binary_search(w).is_ok()) {
             return None;
         }
         let corners = triangle.map(|w| now.x[w]);
         let normal = triangle_normal(corners)?;
-        let agreement = normal.dot(&now.normals[v]);
+        let agreement = normal.dot(&now.normals[vertex]);
         if agreement > FACING_OF_FAR {
             return None;
         }
-        let at = closest_point_on_triangle(&now.x[v], &corners);
+        let at = closest_point_on_triangle(&now.x[vertex], &corners);
         let distance = at.distance_squared.sqrt();
-        let height = (now.x[v] - at.point(&corners)).dot(&normal);
+        let height = (now.x[vertex] - at.point(&corners)).dot(&normal);
         if distance > now.reach || height.abs() < STRAIGHT * distance {
             return None;
         }
-        let apart = self.apart_at_rest(v, &triangle);
-        if apart <= self.far && agreement > FACING {
-            return None;
-        }
-        let side = self.side(v, &triangle, (apart, height), now);
-        let pair = ContactPair {
-            vertex: v,
+        let apart = self.apart_at_rest(vertex, &triangle);
+        (apart > self.far || agreement <= knob("FACING", FACING)).then_some(Candidate {
+            vertex,
             triangle,
-            side,
-            gap: now.gap.min(OF_REST * apart * now.scale),
-            share: 0.0,
-        };
-        Some((distance, pair))
+            apart,
+            distance,
+        })
     }
 
     fn apart_at_rest(&self, v: VertexId, triangle: &[VertexId; 3]) -> f64 {
@@ -157,46 +187,61 @@ impl ContactSearch {
         at.distance_squared.sqrt()
     }
 
-    /// 1 where the vertex belongs before the triangle, −1 where it belongs behind it, `apart` at rest and `height` before
-    /// its plane now.
-    fn side(
-        &self,
-        v: VertexId,
-        triangle: &[VertexId; 3],
-        (apart, height): (f64, f64),
-        now: &Now<'_>,
-    ) -> f64 {
-        if apart > self.far {
-            return 1.0;
+    /// 1 where the vertex belongs before the triangle, −1 where it belongs behind it; none where nothing tells it.
+    fn side(&self, pair: &Candidate, now: &Now<'_>, tree: &mut Option<Tree>) -> Option<f64> {
+        if pair.apart > self.far {
+            return Some(1.0);
         }
-        if let Some(side) = self.side_of_fold(v, triangle, now) {
-            return side;
-        }
-        let corners = triangle.map(|w| self.rest[w]);
-        let between = self.rest[v] - middle(corners);
-        let turn = triangle_normal(corners).unwrap_or_default() - self.rest_normals[v];
+        let corners = pair.triangle.map(|w| self.rest[w]);
+        let between = self.rest[pair.vertex] - middle(corners);
+        let turn = triangle_normal(corners).unwrap_or_default() - self.rest_normals[pair.vertex];
         let before = between.dot(&turn);
-        if before.abs() >= CLEAR * 2.0 * between.norm() {
-            before.signum()
-        } else {
-            height.signum()
+        if before.abs() >= knob("CLEAR", CLEAR) * between.norm() {
+            return Some(before.signum());
         }
+        let tree = tree.get_or_insert_with(|| Tree::new(&self.triangulation, pair.vertex));
+        let walls = nalgebra::center(
+            &now.x[pair.vertex],
+            &middle(pair.triangle.map(|w| now.x[w])),
+        );
+        let way = tree.way_to(pair.triangle)?;
+        let rise: f64 = way.map(|w| (walls - now.x[w]).dot(&now.normals[w])).sum();
+        (rise != 0.0).then_some(rise.signum())
+    }
+}
+
+/// Vertices within a few edges of one, each with the row of the one before it on the way; the first is its own.
+struct Tree(Vec<(VertexId, usize)>);
+
+impl Tree {
+    fn new(triangulation: &Triangulation, root: VertexId) -> Self {
+        let mut reached = vec![(root, 0)];
+        let mut from = 0;
+        for _ in 0..RINGS {
+            let to = reached.len();
+            for row in from..to {
+                for &w in triangulation.vertex_neighbours(reached[row].0) {
+                    if reached.iter().all(|(v, _)| *v != w) {
+                        reached.push((w, row));
+                    }
+                }
+            }
+            from = to;
+        }
+        Self(reached)
     }
 
-    /// Which way a fold over common neighbours is bent: walls of a valley belong before each other, those of a ridge behind.
-    fn side_of_fold(&self, v: VertexId, triangle: &[VertexId; 3], now: &Now<'_>) -> Option<f64> {
-        let around = self.triangulation.vertex_neighbours(v);
-        let is_between = |w: &&VertexId| {
-            let beyond = self.triangulation.vertex_neighbours(**w);
-            triangle.iter().any(|c| beyond.binary_search(c).is_ok())
-        };
-        let walls = nalgebra::center(&now.x[v], &middle(triangle.map(|w| now.x[w])));
-        let bottoms = around.iter().filter(is_between);
-        let rise: Vec<f64> = bottoms
-            .map(|&w| (walls - now.x[w]).dot(&now.normals[w]))
-            .collect();
-        let rise = if rise.is_empty() { return None } else { rise.iter().sum::<f64>() };
-        Some(if rise < 0.0 { -1.0 } else { 1.0 })
+    /// The vertices on the way to the nearest corner of a triangle, without the ends unless they are all; none where it is
+    /// out of reach.
+    fn way_to(&self, triangle: [VertexId; 3]) -> Option<impl Iterator<Item = VertexId> + '_> {
+        let mut row = self.0.iter().position(|(v, _)| triangle.contains(v))?;
+        let mut way = Vec::new();
+        while row != 0 {
+            way.push(self.0[row].0);
+            row = self.0[row].1;
+        }
+        let first = usize::from(way.len() > 1);
+        Some(way.into_iter().skip(first))
     }
 }
 

@@ -5,7 +5,7 @@ use mesh_core::{Point3, Positions, TargetSurface, TriangleBvh, VertexId};
 use super::crossing::Ground;
 
 /// A place this near the target fits, in longest sides of the surface: what the worst distances of a run tolerate.
-const NEAR: f64 = 0.006;
+const NEAR: f64 = 0.004;
 
 /// A target that must be fitted no worse than it was.
 #[derive(Clone, Copy)]

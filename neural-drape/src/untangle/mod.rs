@@ -16,12 +16,12 @@ pub(crate) use fit::Fit;
 use push::push_apart;
 
 /// A patch grows to so many rings around what crosses, one size after the other.
-const RINGS: [usize; 6] = [1, 2, 3, 6, 10, 16];
+const RINGS: [usize; 4] = [1, 2, 4, 8];
 /// Of the ways to free a patch the one is taken that moves no vertex far; others are tried until this share of the largest
 /// motion is enough, ...
-const ENOUGH: f64 = 0.06;
+const ENOUGH: f64 = 0.16;
 /// ... or a patch of so many rings came free.
-const WIDE: usize = 6;
+const WIDE: usize = 4;
 /// So often what crosses is pushed apart and the patch relaxed, for each size.
 const TURNS: usize = 12;
 /// So often a patch that came free is moved back towards where it was, ...
@@ -30,11 +30,11 @@ const RETURNS: usize = 30;
 const RETURN: f64 = 0.15;
 /// What is farther than this share of the largest motion from where it was after half of the turns goes to the surface that
 /// was there instead.
-const STUCK: f64 = 0.02;
+const STUCK: f64 = 0.055;
 /// So often vertices that get in the way stay behind, before nothing moves back.
 const STAYS: usize = 6;
 /// What is farther from a patch than this share of the longest side cannot get in its way; no vertex is moved farther.
-const MAX_MOTION: f64 = 0.08;
+const MAX_MOTION: f64 = 0.03;
 
 /// A shape without the crossings that could be taken out of it.
 pub(crate) struct Untangled {
