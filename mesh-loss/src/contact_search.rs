@@ -20,9 +20,11 @@ const FAR: f64 = 0.08;
 /// A triangle whose nearest point is farther than this, as a cosine, from straight before or behind it says nothing.
 const STRAIGHT: f64 = 0.5;
 /// At rest, the way between them says which side they belong on where the difference of their normals along it is at least this.
-const CLEAR: f64 = 1.2;
-/// A fold is looked for over so many edges.
-const RINGS: usize = 5;
+const CLEAR: f64 = 0.6;
+/// What is farther from a vertex than so many of its edges is not looked at, but for the gap ...
+const OF_EDGE: f64 = 3.0;
+/// ... with the square of an edge over the area of an equilateral triangle, 4/√3.
+const AREA_OF_EDGE: f64 = 2.309;
 /// No gap is larger than this share of the distance at rest.
 const OF_REST: f64 = 0.5;
 /// So many vertices are one piece of parallel work.
@@ -49,7 +51,6 @@ struct Now<'a> {
     /// Lengths now over lengths at rest.
     scale: f64,
     gap: f64,
-    reach: f64,
 }
 
 /// A vertex and a triangle whose side is not known yet.
@@ -58,8 +59,10 @@ struct Candidate {
     triangle: [VertexId; 3],
     /// How far apart at rest, in its lengths.
     apart: f64,
-    /// How far apart now.
+    /// How far apart now, ...
     distance: f64,
+    /// ... and how far before the triangle's plane.
+    height: f64,
 }
 
 impl Candidate {
@@ -72,14 +75,6 @@ impl Candidate {
             share: 0.0,
         }
     }
-}
-
-fn knob(name: &str, value: f64) -> f64 {
-    use std::collections::BTreeMap;
-    use std::sync::OnceLock;
-    static ALL: OnceLock<BTreeMap<String, f64>> = OnceLock::new();
-    let all = ALL.get_or_init(|| std::env::vars().filter_map(|(k, v)| Some((k.strip_prefix("K_")?.to_owned(), v.parse().ok()?))).collect());
-    all.get(name).copied().unwrap_or(value)
 }
 
 impl ContactSearch {
@@ -95,7 +90,7 @@ impl ContactSearch {
         }
     }
 
-    /// For every vertex the nearest triangle within `reach` that it is to stay before, and the nearest that it is to stay
+    /// For every vertex the nearest triangle within `reach` and three of its edges that it is to stay before, and the nearest that it is to stay
     /// behind, at least `gap` from them and less where they are nearer at rest. Triangles at a vertex or at its neighbours
     /// do not count.
     pub fn near(&mut self, x: &Positions, gap: f64, reach: f64) -> Contact {
@@ -108,17 +103,19 @@ impl ContactSearch {
             normals: vertex_normals(&triangulation, x),
             scale: (total / self.rest_area.max(f64::MIN_POSITIVE)).sqrt(),
             gap,
-            reach,
         };
-        let share = |v: VertexId| {
-            let around = triangulation.vertex_triangles(v).iter();
-            around.map(|&t| areas[t as usize]).sum::<f64>() / (3.0 * total)
+        let around = |v: VertexId| triangulation.vertex_triangles(v).iter();
+        let area = |v: VertexId| around(v).map(|&t| areas[t as usize]).sum::<f64>();
+        let share = |v: VertexId| area(v) / (3.0 * total);
+        let reach = |v: VertexId| {
+            let edge = (AREA_OF_EDGE * area(v) / around(v).len().max(1) as f64).sqrt();
+            reach.min((OF_EDGE * edge).max(gap))
         };
         let vertices: Vec<VertexId> = triangulation.used_vertices().collect();
         let found: Vec<[Option<ContactPair>; 2]> = vertices
             .par_iter()
             .with_min_len(CHUNK)
-            .map(|&v| self.near_vertex(v, &now))
+            .map(|&v| self.near_vertex(v, reach(v), &now))
             .collect();
         let pairs = found.into_iter().flatten().flatten();
         let pairs = pairs.map(|pair| ContactPair {
@@ -130,17 +127,14 @@ impl ContactSearch {
         }
     }
 
-    fn near_vertex(&self, v: VertexId, now: &Now<'_>) -> [Option<ContactPair>; 2] {
+    fn near_vertex(&self, v: VertexId, reach: f64, now: &Now<'_>) -> [Option<ContactPair>; 2] {
         let mut nearest: [Option<(f64, u32, ContactPair)>; 2] = [None, None];
-        let mut tree = None;
-        let bounds = around(&now.x[v], now.reach);
+        let bounds = around(&now.x[v], reach);
         self.bvh.for_each_overlapping(&bounds, |row| {
-            let Some(candidate) = self.candidate(v, row, now) else {
+            let Some(candidate) = self.candidate(v, row, now).filter(|c| c.distance <= reach) else {
                 return;
             };
-            let Some(side) = self.side(&candidate, now, &mut tree) else {
-                return;
-            };
+            let side = self.side(&candidate, now);
             let best = &mut nearest[usize::from(side < 0.0)];
             // Equally near ones are told apart by their rows, whatever order they come in.
             let (distance, pair) = (candidate.distance, candidate.pair(side, now));
@@ -154,10 +148,9 @@ impl ContactSearch {
     /// A vertex and a triangle that face each other; none where it is a corner, too far or turned away.
     fn candidate(&self, vertex: VertexId, row: u32, now: &Now<'_>) -> Option<Candidate> {
         let triangle = self.triangulation.triangles()[row as usize];
-        if triangle.contains(&vertex) {
-            return None;
-        }
-        if knob("RING", 0.0) > 0.0 && triangle.iter().any(|w| self.triangulation.vertex_neighbours(vertex).binary_search(w).is_ok()) {
+        let around = self.triangulation.vertex_neighbours(vertex);
+        let is_neighbour = |w: &VertexId| *w == vertex || around.binary_search(w).is_ok();
+        if triangle.iter().any(is_neighbour) {
             return None;
         }
         let corners = triangle.map(|w| now.x[w]);
@@ -169,15 +162,16 @@ impl ContactSearch {
         let at = closest_point_on_triangle(&now.x[vertex], &corners);
         let distance = at.distance_squared.sqrt();
         let height = (now.x[vertex] - at.point(&corners)).dot(&normal);
-        if distance > now.reach || height.abs() < STRAIGHT * distance {
+        if height.abs() < STRAIGHT * distance {
             return None;
         }
         let apart = self.apart_at_rest(vertex, &triangle);
-        (apart > self.far || agreement <= knob("FACING", FACING)).then_some(Candidate {
+        (apart > self.far || agreement <= FACING).then_some(Candidate {
             vertex,
             triangle,
             apart,
             distance,
+            height,
         })
     }
 
@@ -187,61 +181,44 @@ impl ContactSearch {
         at.distance_squared.sqrt()
     }
 
-    /// 1 where the vertex belongs before the triangle, −1 where it belongs behind it; none where nothing tells it.
-    fn side(&self, pair: &Candidate, now: &Now<'_>, tree: &mut Option<Tree>) -> Option<f64> {
+    /// 1 where the vertex belongs before the triangle, −1 where it belongs behind it.
+    fn side(&self, pair: &Candidate, now: &Now<'_>) -> f64 {
         if pair.apart > self.far {
-            return Some(1.0);
+            return 1.0;
+        }
+        if let Some(rise) = self.rise_of_fold(pair, now) {
+            return sign(rise);
         }
         let corners = pair.triangle.map(|w| self.rest[w]);
         let between = self.rest[pair.vertex] - middle(corners);
         let turn = triangle_normal(corners).unwrap_or_default() - self.rest_normals[pair.vertex];
         let before = between.dot(&turn);
-        if before.abs() >= knob("CLEAR", CLEAR) * between.norm() {
-            return Some(before.signum());
-        }
-        let tree = tree.get_or_insert_with(|| Tree::new(&self.triangulation, pair.vertex));
-        let walls = nalgebra::center(
-            &now.x[pair.vertex],
-            &middle(pair.triangle.map(|w| now.x[w])),
-        );
-        let way = tree.way_to(pair.triangle)?;
-        let rise: f64 = way.map(|w| (walls - now.x[w]).dot(&now.normals[w])).sum();
-        (rise != 0.0).then_some(rise.signum())
+        let is_clear = before.abs() >= CLEAR * between.norm();
+        sign(if is_clear { before } else { pair.height })
+    }
+
+    /// How far the walls of a fold rise over the neighbours that both have in common: a valley's more than 0, a ridge's less.
+    fn rise_of_fold(&self, pair: &Candidate, now: &Now<'_>) -> Option<f64> {
+        let neighbours = |v: VertexId| self.triangulation.vertex_neighbours(v);
+        let is_common = |w: &&VertexId| {
+            let beyond = neighbours(**w);
+            pair.triangle
+                .iter()
+                .any(|c| beyond.binary_search(c).is_ok())
+        };
+        let wall = middle(pair.triangle.map(|w| now.x[w]));
+        let walls = nalgebra::center(&now.x[pair.vertex], &wall);
+        let common = neighbours(pair.vertex).iter().filter(is_common);
+        let rises = common.map(|&w| (walls - now.x[w]).dot(&now.normals[w]));
+        rises.reduce(|sum, rise| sum + rise)
     }
 }
 
-/// Vertices within a few edges of one, each with the row of the one before it on the way; the first is its own.
-struct Tree(Vec<(VertexId, usize)>);
-
-impl Tree {
-    fn new(triangulation: &Triangulation, root: VertexId) -> Self {
-        let mut reached = vec![(root, 0)];
-        let mut from = 0;
-        for _ in 0..RINGS {
-            let to = reached.len();
-            for row in from..to {
-                for &w in triangulation.vertex_neighbours(reached[row].0) {
-                    if reached.iter().all(|(v, _)| *v != w) {
-                        reached.push((w, row));
-                    }
-                }
-            }
-            from = to;
-        }
-        Self(reached)
-    }
-
-    /// The vertices on the way to the nearest corner of a triangle, without the ends unless they are all; none where it is
-    /// out of reach.
-    fn way_to(&self, triangle: [VertexId; 3]) -> Option<impl Iterator<Item = VertexId> + '_> {
-        let mut row = self.0.iter().position(|(v, _)| triangle.contains(v))?;
-        let mut way = Vec::new();
-        while row != 0 {
-            way.push(self.0[row].0);
-            row = self.0[row].1;
-        }
-        let first = usize::from(way.len() > 1);
-        Some(way.into_iter().skip(first))
+fn sign(value: f64) -> f64 {
+    if value < 0.0 {
+        -1.0
+    } else {
+        1.0
     }
 }
 
@@ -254,5 +231,85 @@ fn around(p: &Point3, reach: f64) -> Aabb {
     Aabb {
         min: p - by,
         max: p + by,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use mesh_core::{shapes, PolygonSoup};
+
+    use super::*;
+    use crate::Loss;
+
+    /// Two sheets of the unit square at these heights; the second is turned over if it looks down.
+    fn sheets(heights: [f64; 2], looks_down: [bool; 2]) -> (Arc<Triangulation>, Arc<Positions>) {
+        let sheet = shapes::open_grid(12, 12);
+        let n = sheet.positions.len() as u32;
+        let bounds = Aabb::of(&sheet.positions);
+        let size = bounds.longest_side();
+        let mut both = PolygonSoup::default();
+        for (k, (height, looks_down)) in (0..).zip(heights.into_iter().zip(looks_down)) {
+            let at = |p: &Point3| Point3::new(p.x / size, p.y / size, height);
+            both.positions.extend(sheet.positions.iter().map(at));
+            for f in &sheet.faces {
+                let mut face: Vec<u32> = f.iter().map(|v| v + k * n).collect();
+                if looks_down {
+                    face.reverse();
+                }
+                both.faces.push(face);
+            }
+        }
+        let (mesh, x) = both.into_halfedge().unwrap();
+        (Arc::new(Triangulation::new(&mesh, &x)), Arc::new(x))
+    }
+
+    /// Heights, over that of the lower sheet, by which the upper is pushed: the sum of −dL/dz.
+    fn push(rest: f64, now: f64, looks_down: [bool; 2]) -> (f64, usize) {
+        let (triangulation, rest) = sheets([0.0, rest], looks_down);
+        let (_, x) = sheets([0.0, now], looks_down);
+        let contact = ContactSearch::new(&triangulation, &rest).near(&x, 0.02, 0.1);
+        let mut gradient = VertexData::new(x.len(), Vector3::zeros());
+        contact.accumulate(&x, 1.0, &mut gradient);
+        let half = x.len() / 2;
+        let upper = gradient.iter().skip(half);
+        (upper.map(|g| -g.z).sum(), contact.pairs.len())
+    }
+
+    #[test]
+    fn what_faced_each_other_is_parted_whether_it_came_near_or_passed() {
+        for now in [0.01, 0.0025, -0.01] {
+            let (up, n) = push(0.5, now, [false, true]);
+            assert!(up > 0.1 && n > 0, "{now}: {up}");
+        }
+        assert_eq!(push(0.5, 0.03, [false, true]).0, 0.0);
+    }
+
+    #[test]
+    fn walls_with_material_between_them_stay_in_their_order() {
+        // The upper looks up, the lower down: a plate of thickness 0.06.
+        for now in [0.01, -0.01] {
+            let (up, _) = push(0.06, now, [true, false]);
+            assert!(up > 0.1, "{now}: {up}");
+        }
+    }
+
+    #[test]
+    fn a_gap_is_no_wider_than_half_of_that_at_rest() {
+        let (triangulation, rest) = sheets([0.0, 0.01], [false, true]);
+        let mut search = ContactSearch::new(&triangulation, &rest);
+        let contact = search.near(&rest, 0.02, 0.1);
+        assert!(!contact.pairs.is_empty());
+        assert!(contact.pairs.iter().all(|p| (p.gap - 0.005).abs() < 1e-9));
+        let mut gradient = VertexData::new(rest.len(), Vector3::zeros());
+        assert_eq!(contact.accumulate(&rest, 1.0, &mut gradient), 0.0);
+    }
+
+    #[test]
+    fn a_smooth_surface_has_no_pairs() {
+        let (mesh, rest) = shapes::quad_sphere(12).into_halfedge().unwrap();
+        let triangulation = Arc::new(Triangulation::new(&mesh, &rest));
+        let rest = Arc::new(rest);
+        let contact = ContactSearch::new(&triangulation, &rest).near(&rest, 0.1, 0.3);
+        assert_eq!(contact.pairs, []);
     }
 }

@@ -31,7 +31,7 @@ impl ContactConfig {
     pub const fn standard() -> Self {
         Self {
             from: 0.33,
-            weight: 100.0,
+            weight: 400.0,
             gap: 0.002,
         }
     }
