@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use crate::{DrapeError, StateReader, StateWriter};
 
 /// So many iterations pairs are held before they are sought again.
-const PERIOD: usize = 10;
+const PERIOD: usize = 20;
 /// Pairs nearer than this are looked at, in longest sides: no two come farther towards each other in a period.
 const REACH: f64 = 0.015;
 

@@ -4,8 +4,9 @@ use mesh_core::{Point3, Positions, TargetSurface, TriangleBvh, VertexId};
 
 use super::crossing::Ground;
 
-/// A place this near the target fits, in longest sides of the surface: what the worst distances of a run tolerate.
-const NEAR: f64 = 0.004;
+/// A place this near the target fits, in longest sides of the surface: less than the worst distances of a run tolerate, as
+/// places between those that are looked at are a little farther.
+const NEAR: f64 = 0.005;
 
 /// A target that must be fitted no worse than it was.
 #[derive(Clone, Copy)]

@@ -16,7 +16,9 @@ pub(crate) use fit::Fit;
 use push::push_apart;
 
 /// A patch grows to so many rings around what crosses, one size after the other.
-const RINGS: [usize; 4] = [1, 2, 4, 8];
+const RINGS: [usize; 3] = [1, 2, 4];
+/// A patch where more pairs cross is left as it is: it does not come free without moving far.
+const MAX_PAIRS: usize = 60;
 /// Of the ways to free a patch the one is taken that moves no vertex far; others are tried until this share of the largest
 /// motion is enough, ...
 const ENOUGH: f64 = 0.16;
@@ -94,6 +96,10 @@ pub(crate) fn untangle(
             reach: MAX_MOTION * UnitFrame::principal(positions.as_slice()).scale,
         };
         for patch in patches(triangulation, &left) {
+            let is_here = |pair: &&[u32; 2]| is_at(triangulation, &patch, pair);
+            if left.iter().filter(is_here).count() > MAX_PAIRS {
+                continue;
+            }
             if let Some(free) = untangler.freed(&positions, &patch, &left, &broken) {
                 left.retain(|pair| !is_at(triangulation, &patch, pair));
                 (positions, broken) = free;
