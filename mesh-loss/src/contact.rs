@@ -60,7 +60,11 @@ impl ContactPair {
             let g = normal * (weight * self.share * slope * self.side);
             grad[self.vertex] += g;
             let foot = x[self.vertex] - normal * signed;
-            for (&v, share) in self.triangle.iter().zip(barycentric(&foot, &corners, &normal)) {
+            for (&v, share) in self
+                .triangle
+                .iter()
+                .zip(barycentric(&foot, &corners, &normal))
+            {
                 grad[v] -= g * share;
             }
         }

@@ -131,7 +131,8 @@ impl ContactSearch {
         let mut nearest: [Option<(f64, u32, ContactPair)>; 2] = [None, None];
         let bounds = around(&now.x[v], reach);
         self.bvh.for_each_overlapping(&bounds, |row| {
-            let Some(candidate) = self.candidate(v, row, now).filter(|c| c.distance <= reach) else {
+            let Some(candidate) = self.candidate(v, row, now).filter(|c| c.distance <= reach)
+            else {
                 return;
             };
             let side = self.side(&candidate, now);

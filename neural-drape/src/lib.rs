@@ -51,10 +51,10 @@
 
 mod check;
 mod config;
+mod contact;
 mod coverage;
 mod drape;
 mod error;
-mod contact;
 mod input;
 pub mod network;
 mod objective;
@@ -75,9 +75,9 @@ mod warp;
 pub use config::{
     AngleReference, Descent, DrapeConfig, OverlapMode, ParametrizationConfig, Sampling,
 };
+pub use contact::ContactConfig;
 pub use drape::{Drape, StepReport};
 pub use error::DrapeError;
-pub use contact::ContactConfig;
 pub use input::DrapeInput;
 pub use objective::TermReport;
 pub use parametrization::Parametrization;

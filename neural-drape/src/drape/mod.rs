@@ -11,8 +11,8 @@ use mesh_core::{
 };
 use mesh_loss::{Beyond, Matches, Overlap, SurfaceMatcher};
 
-use crate::contact::Apart;
 use crate::config::{Descent, DrapeConfig};
+use crate::contact::Apart;
 use crate::coverage::{mark_uncovered, Pairing, Target, FAR_BEYOND, N_BEYOND};
 use crate::input::check_length;
 use crate::network::{NetworkMap, Shapes};
@@ -134,7 +134,9 @@ impl Drape {
             landmarks: Vec::new(),
             matcher,
             structure: StructuralLoss::new(input.triangulation, input.rest, &initial, &config),
-            apart: config.contact.map(|contact| Apart::new(contact, input.triangulation, input.rest)),
+            apart: config
+                .contact
+                .map(|contact| Apart::new(contact, input.triangulation, input.rest)),
             triangulation: Arc::clone(input.triangulation),
             rest: Arc::clone(input.rest),
             iteration: 0,
@@ -252,7 +254,13 @@ impl Drape {
         if self.config.repair {
             let held = self.held();
             let target = self.matcher.target().as_ref();
-            crate::repair(&self.triangulation, &self.rest, &positions, &held, Some(target))
+            crate::repair(
+                &self.triangulation,
+                &self.rest,
+                &positions,
+                &held,
+                Some(target),
+            )
         } else {
             let defects = crate::repair::defects(&self.triangulation, &self.rest, &positions);
             Repair {

@@ -4,7 +4,9 @@ mod judge;
 
 use std::sync::Arc;
 
-use mesh_core::{Point3, Positions, TargetSurface, Triangulation, UnitFrame, Vector3, VertexData, VertexId};
+use mesh_core::{
+    Point3, Positions, TargetSurface, Triangulation, UnitFrame, Vector3, VertexData, VertexId,
+};
 use mesh_loss::{FoldBarrier, LocalShape};
 
 pub(crate) use judge::{Broken, Judge, Reach, Surroundings};
