@@ -5,7 +5,7 @@
 
 use crate::network::NetworkConfig;
 use crate::{
-    AngleReference, ContactConfig, Descent, DrapeConfig, DrapeError, LearningRate, OverlapMode,
+    AngleReference, Descent, DrapeConfig, DrapeError, LearningRate, OverlapMode,
     ParametrizationConfig, Sampling, Stage, VerticesConfig, Weights,
 };
 
@@ -73,7 +73,7 @@ impl DrapeConfig {
             skinny_threshold: 0.2,
             fold_limit: 0.3,
             repair: true,
-            contact: Some(ContactConfig::standard()),
+            contact: None,
             stages: standard_stages(330, 670),
         }
     }
@@ -111,7 +111,6 @@ impl DrapeConfig {
                 double_every: None,
                 ..standard.sampling
             },
-            contact: None,
             ..standard
         }
     }
