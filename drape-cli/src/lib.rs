@@ -14,6 +14,7 @@ mod creatures;
 mod inspection;
 mod output;
 mod profile;
+mod program;
 mod progress;
 mod requirement;
 mod study;
@@ -27,6 +28,8 @@ use std::process::ExitCode;
 use anyhow::Context as _;
 use clap::error::ErrorKind;
 use clap::Parser;
+
+pub use program::Program;
 
 /// No more threads are started, whatever is asked for: each takes memory, and none beyond the processors helps.
 const MAX_THREADS: usize = 512;
@@ -54,6 +57,12 @@ pub fn run(args: impl IntoIterator<Item = OsString>) -> ExitCode {
         eprintln!("error: {}", one_line(&format!("{error:#}")));
         ExitCode::from(FAILED)
     })
+}
+
+/// As [`run`], for a program that is not the running executable: a script of another language's package.
+pub fn run_as(program: Program, args: impl IntoIterator<Item = OsString>) -> ExitCode {
+    program.remember();
+    run(args)
 }
 
 impl Cli {

@@ -16,11 +16,22 @@ export class Camera {
   constructor() {
     this.up = "y";
     this.base = UPS.y;
+    this.isFlat = false;
     this.home();
   }
 
   home() {
     Object.assign(this, HOME, { centre: [...HOME.centre] });
+  }
+
+  // All that tells how it looks, to come back to.
+  get pose() {
+    const { yaw, pitch, distance, centre, up, base, isFlat } = this;
+    return { yaw, pitch, distance, centre, up, base, isFlat };
+  }
+
+  set pose(pose) {
+    Object.assign(this, pose);
   }
 
   setUp(axis) {
@@ -57,6 +68,14 @@ export class Camera {
     this.distance = Math.max(0.02, Math.min(40, this.distance * factor));
   }
 
+  // Comes nearer to what is seen at a place of the view, each of x and y from −1 to 1, which stays where it is.
+  zoomAt(factor, [x, y], aspect) {
+    const before = this.distance;
+    this.zoom(factor);
+    const moved = (before - this.distance) * tangent(aspect);
+    this.centre = add(this.centre, turnBack(this.rotation, [x * moved * aspect, y * moved, 0]));
+  }
+
   // Looks at a ball.
   frame(centre, radius) {
     this.centre = centre;
@@ -69,7 +88,7 @@ export class Camera {
     const [m, t] = [this.rotation, tangent(aspect) * FILLED];
     const needed = points.map((p) => {
       const [x, y, z] = turn(m, subtract(p, centre));
-      return z + Math.max(Math.abs(x) / (t * aspect), Math.abs(y) / t);
+      return (this.isFlat ? 0 : z) + Math.max(Math.abs(x) / (t * aspect), Math.abs(y) / t);
     });
     this.distance = Math.max(0.05, ...needed);
   }
@@ -81,7 +100,12 @@ export class Camera {
     const near = Math.max(0.005, this.distance * 0.02);
     const far = this.distance + 6;
     const f = 1 / tangent(aspect);
-    const projection = [
+    const [s, depth] = [f / this.distance, far + 6];
+    // Without perspective, what lies behind the eye is seen as well.
+    const projection = this.isFlat ? [
+      s / aspect, 0, 0, 0, 0, s, 0, 0,
+      0, 0, -1 / depth, 0, 0, 0, 0, 1,
+    ] : [
       f / aspect, 0, 0, 0, 0, f, 0, 0,
       0, 0, (far + near) / (near - far), -1, 0, 0, (2 * far * near) / (near - far), 0,
     ];
@@ -95,7 +119,13 @@ export class Camera {
   // From the eye through a point of the view, each of x and y from −1 to 1.
   ray(x, y, aspect, height) {
     const t = tangent(aspect);
+    const spread = (8 * t) / height;
+    if (this.isFlat) {
+      const beside = scale([x * t * aspect, y * t, 0], this.distance);
+      const back = [beside[0], beside[1], this.distance + 3];
+      return { origin: add(this.centre, turnBack(this.rotation, back)), direction: turnBack(this.rotation, [0, 0, -1]), spread };
+    }
     const direction = normalize(turnBack(this.rotation, [x * t * aspect, y * t, -1]));
-    return { origin: this.eye, direction, spread: (8 * t) / height };
+    return { origin: this.eye, direction, spread };
   }
 }

@@ -37,8 +37,8 @@ export class Cameras {
     if (!view.shape) return;
     const { target } = this.app.views;
     const { shape } = view.name === "result" && target.shape ? target : view;
-    const { clientWidth, clientHeight } = view.element;
-    view.camera.fit(shape.bounds.centre, shape.sample(3000), clientWidth / clientHeight);
+    const { width, height } = view.box;
+    view.camera.fit(shape.bounds.centre, shape.sample(3000), width / height);
   }
 
   frameAll() {
@@ -70,6 +70,21 @@ export class Cameras {
     source.camera.look(target.camera.yaw, target.camera.pitch);
     this.frame(source);
     this.app.painter.invalidate();
+  }
+
+  // With or without perspective, in all views.
+  setFlat(isFlat) {
+    this.app.views.list.forEach(({ camera }) => (camera.isFlat = isFlat));
+    this.app.painter.invalidate();
+  }
+
+  // One view in the place of all, or all again.
+  enlarge(view) {
+    const main = document.querySelector("main");
+    const isLarge = view.element.classList.contains("is-large");
+    this.app.views.list.forEach((other) => other.element.classList.toggle("is-large", other === view && !isLarge));
+    main.classList.toggle("is-single", !isLarge);
+    this.app.resized();
   }
 
   toggleUp() {

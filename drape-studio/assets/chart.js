@@ -1,4 +1,5 @@
-// Loss and Q over the iterations.
+// Quality over the iterations: Q, and the mean distance on a logarithmic scale. The loss is not drawn: it rises whenever
+// weights change, and says nothing of the result.
 
 export class Chart {
   constructor(canvas) {
@@ -40,8 +41,8 @@ export class Chart {
     pen.strokeStyle = colour("--line");
     pen.strokeRect(left - 0.5, top - 0.5, right - left + 1, bottom - top + 1);
 
-    const [loss, q] = [this.curves.get("loss") ?? [], this.curves.get("Q") ?? []];
-    const end = Math.max(1, ...[loss, q].map((points) => points.at(-1)?.[0] ?? 0));
+    const [q, distances] = [this.curves.get("Q") ?? [], this.curves.get("mean distance") ?? []];
+    const end = Math.max(1, ...[q, distances].map((points) => points.at(-1)?.[0] ?? 0));
     const x = (iteration) => left + ((right - left) * iteration) / end;
     const line = (points, y, ink, thickness) => {
       if (points.length === 0) return;
@@ -51,20 +52,23 @@ export class Chart {
       points.forEach(([iteration, value], k) => (k ? pen.lineTo(x(iteration), y(value)) : pen.moveTo(x(iteration), y(value))));
       pen.stroke();
     };
-    const logs = loss.map(([, value]) => Math.log(Math.max(value, 1e-12)));
-    const [low, high] = [Math.min(...logs), Math.max(...logs)];
-    const span = Math.max(high - low, 1e-6);
-    line(loss, (value) => bottom - 2 - ((bottom - top - 4) * (Math.log(Math.max(value, 1e-12)) - low)) / span, colour("--soft"), 1.5);
-    line(q, (value) => bottom - 2 - (bottom - top - 4) * value, colour("--accent"), 2.5);
+    const low = (value) => Math.log(Math.max(value, 1e-9));
+    const logs = distances.map(([, value]) => low(value));
+    const [least, most] = [Math.min(...logs), Math.max(...logs)];
+    const span = Math.max(most - least, 1e-6);
+    const tall = bottom - top - 4;
+    line(distances, (value) => bottom - 2 - (tall * (low(value) - least)) / span, colour("--soft"), 1.5);
+    line(q, (value) => bottom - 2 - tall * value, colour("--accent"), 2.5);
 
     pen.textBaseline = "alphabetic";
     pen.fillStyle = colour("--soft");
-    const text = loss.length ? `loss ${loss.at(-1)[1].toPrecision(3)}` : "loss";
-    pen.fillText(text, left, top - 5);
+    const far = distances.length ? `mean distance ${(100 * distances.at(-1)[1]).toPrecision(2)} %` : "mean distance";
+    pen.fillText(far, left, top - 5);
     pen.textAlign = "right";
     pen.fillStyle = colour("--accent");
-    pen.fillText(q.length ? `Q ${q.at(-1)[1].toFixed(3)}` : "Q", right, top - 5);
+    const good = q.length ? `Q ${q.at(-1)[1].toFixed(3)}` : "Q";
+    pen.fillText(good, right, top - 5);
     pen.textAlign = "left";
-    canvas.setAttribute("aria-label", loss.length ? `After ${loss.at(-1)[0] + 1} iterations: ${text}${q.length ? `, Q ${q.at(-1)[1].toFixed(3)}` : ""}` : "Loss and Q over the iterations: no drape yet");
+    canvas.setAttribute("aria-label", q.length ? `After ${q.at(-1)[0]} iterations: ${good}, ${far}` : "Quality over the iterations: no drape yet");
   }
 }

@@ -5,15 +5,16 @@ const MOUSE = [
   ["Drag a marker", "move it along the surface"],
   ["Drag, or middle button", "turn"],
   ["Shift drag, or right button", "shift"],
-  ["Wheel, pinch, or Ctrl drag", "nearer, farther"],
+  ["Wheel", "nearer to the pointer, farther"],
+  ["Pinch, or Ctrl drag", "nearer, farther"],
   ["Two fingers on a trackpad", "turn; with Shift: shift"],
 ];
 
 const KEYS = [
-  ["Drape", [["D", "drape"], ["Space", "pause, resume"], [".", "one iteration"], ["E", "more iterations"]]],
-  ["Landmarks", [["Ctrl Z", "undo"], ["Ctrl Shift Z", "redo"], ["Delete", "delete the chosen one"], ["F2", "rename it"], ["R", "soft or rigid"], ["M", "mirror on or off"], ["Esc", "choose none"]]],
-  ["Cameras", [["Home", "frame everything"], ["F", "frame the chosen landmark"], ["1 3 7", "from the front, the side, above"], ["Arrows", "turn"], ["+ −", "nearer, farther"], ["L", "together or each alone"], ["A", "turn the source as the result stands"], ["U", "y or z points up"]]],
-  ["Shown", [["Z", "shaded, edges, points"], ["H", "next heat map"], ["O", "target over result"], ["T", "light or dark"], ["?", "this page"]]],
+  ["Drape", [["D", "drape"], ["Space", "pause, resume"], [".", "one iteration"], ["E", "more iterations"], ["K", "keep the result"]]],
+  ["Landmarks", [["Ctrl Z", "undo"], ["Ctrl Shift Z", "redo"], ["Delete", "delete the chosen one"], ["F2", "rename it"], ["R", "soft or rigid"], ["Enter", "a cross to move with the arrows; again: mark there; ends a curve"], ["C", "draw a curve"], ["M", "mirror on or off"], ["S", "snap: off, to a vertex, to the sharpest place"], ["B", "brush of weights on or off"], ["G", "next brush on the result: relax, pull, slide"], ["Esc", "give up the half pair, choose none"]]],
+  ["Cameras", [["Home", "frame everything"], ["F", "frame the chosen landmark"], ["1 2 3 4", "from the front, behind, the right, the left"], ["7 8", "from above, below"], ["5", "with or without perspective"], ["X", "one view large, or all"], ["Arrows", "turn; move the cross"], ["+ −", "nearer, farther"], ["L", "together or each alone"], ["A", "turn the source as the result stands"], ["U", "y or z points up"]]],
+  ["Shown", [["Z", "shaded, edges, points"], ["V", "as scanned, wrinkles, clay"], ["H", "next heat map"], ["O", "target over result"], ["T", "light or dark"], ["?", "this page"]]],
 ];
 
 // Shows the list.

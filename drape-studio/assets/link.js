@@ -73,8 +73,13 @@ export const fetchShape = async (name, hash) => {
   };
 };
 
+// Opens what the studio knows by name: the target that waits, a session that was set aside.
+export const openKnown = (what, name) => post(what, name, null);
+
 // Sends a file to be opened.
-export const openFile = async (role, file) => {
-  const answer = await fetch(`open/${role}/${encodeURIComponent(file.name)}`, { method: "POST", body: file });
+export const openFile = (role, file) => post(role, file.name, file);
+
+const post = async (role, name, body) => {
+  const answer = await fetch(`open/${role}/${encodeURIComponent(name)}`, { method: "POST", body });
   if (!answer.ok) throw new Error(answer.status === 413 ? "the file is larger than 512 MB" : await answer.text());
 };

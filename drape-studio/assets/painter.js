@@ -4,13 +4,8 @@ import { Renderer } from "./renderer.js";
 
 const $ = (id) => document.getElementById(id);
 export const STYLES = ["shaded", "wire", "points"];
-// Lowest and highest value of each heat map, and what the legend says of them.
-export const HEATS = {
-  distance: [0, 0.01, "0", "1 % of the longest side"],
-  stretch: [1, 2, "1", "2"],
-  angle: [0, 30, "0°", "30°"],
-  flipped: [0, 1, "as it should be", "flipped"],
-};
+// As it was scanned, with wrinkles brought out, or plain.
+export const LOOKS = ["scan", "matcap", "clay"];
 const COLOURS = {
   light: { back: [0.89, 0.905, 0.92], source: [0.93, 0.80, 0.58], target: [0.62, 0.70, 0.78], result: [0.93, 0.80, 0.58], line: [0.1, 0.12, 0.15] },
   dark: { back: [0.125, 0.145, 0.165], source: [0.88, 0.73, 0.50], target: [0.48, 0.57, 0.66], result: [0.88, 0.73, 0.50], line: [0.02, 0.03, 0.04] },
@@ -23,12 +18,26 @@ const ink = ({ camera, shape, box }) => {
   return EDGE.ink * Math.max(0, Math.min(1, (pixels - EDGE.none) / (EDGE.full - EDGE.none)));
 };
 
+// What lies behind points is hidden where these are nearer to each other than this many mean distances.
+const CLOSED = 2.5;
+
 export class Painter {
   constructor(app, canvas) {
     this.app = app;
     this.canvas = canvas;
     this.renderer = new Renderer(canvas);
     this.isWaiting = false;
+    // The system takes a graphics card away when it sleeps, or when a driver is renewed.
+    canvas.addEventListener("webglcontextlost", (event) => event.preventDefault());
+    canvas.addEventListener("webglcontextrestored", () => this.restore());
+  }
+
+  // Everything goes to the graphics card again.
+  restore() {
+    this.renderer = new Renderer(this.canvas);
+    this.app.views.list.forEach((view) => view.restore(this.renderer));
+    this.app.strip.shape?.upload(this.renderer.gl);
+    this.invalidate();
   }
 
   // These views are to be drawn again; all where none is named.
@@ -62,15 +71,18 @@ export class Painter {
 
   draw() {
     const { app, renderer } = this;
-    if (!app.views) return;
-    const isResized = renderer.begin();
-    const landmarks = app.state?.landmarks ?? [];
+    if (!app.views || renderer.gl.isContextLost()) return;
+    const isResized = renderer.begin(app.views.size);
+    const { landmarks } = app;
+    app.loupe?.draw(this);
     for (const view of app.views.list) {
+      if (view.box.width <= 1) continue;
       if (view.isStale || isResized) this.drawView(view, landmarks);
       else if (view.isUnprobed) this.probe(view, landmarks);
       [view.isStale, view.isUnprobed] = [false, false];
       if (view.probes.collect()) this.refresh();
-      view.showMarkers(landmarks, app.chosen);
+      view.markers.show(landmarks, app.chosen);
+      app.curves.draw(view);
     }
     app.panels.showMisses(app.stage.misses(landmarks), app.chosen);
   }
@@ -80,27 +92,45 @@ export class Painter {
     this.renderer.aim(box, view.camera.matrices(box.width / box.height));
   }
 
+  // The shape of a view as it is shown alone, where the renderer is aimed; how that was done.
+  drawShape(view) {
+    const { app, renderer } = this;
+    const { style, look } = app.preferences;
+    const colours = COLOURS[app.theme];
+    renderer.clear(colours.back);
+    if (!view.shape) return null;
+    const isResult = view.name === "result";
+    const range = isResult ? app.legend.range : [0, 1];
+    const how = { style, look, colour: colours[view.name], line: colours.line, ink: ink(view) };
+    renderer.draw(view.shape, { ...how, range, isGrey: isResult });
+    return { colours, isResult, range, how };
+  }
+
   drawView(view, landmarks) {
     const { app, renderer } = this;
-    const { style } = app.preferences;
-    const colours = COLOURS[app.theme];
     this.aim(view);
-    renderer.clear(colours.back);
-    if (!view.shape) return;
-    const isResult = view.name === "result";
-    const range = isResult ? (app.stage.heat ? HEATS[app.stage.heat] : null) : [0, 1];
-    renderer.draw(view.shape, { style, colour: colours[view.name], line: colours.line, ink: ink(view), range });
+    const drawn = this.drawShape(view);
+    if (!drawn) return;
+    const { colours, isResult, range, how } = drawn;
     this.probe(view, landmarks);
     const ranges = view.name === "source" ? app.parts.pointedRanges : [];
     if (ranges.length > 0 && view.shape.values) renderer.through(view.shape, ranges, range);
     if (isResult && this.overlay > 0 && app.views.target.shape) {
       renderer.draw(app.views.target.shape, { style: "shaded", colour: colours.target, alpha: this.overlay });
     }
+    if (isResult && app.strip.share > 0) {
+      renderer.cut(app.strip.share);
+      renderer.clear(colours.back);
+      renderer.draw(app.strip.shape, how);
+    }
   }
 
   // Asks which landmarks of a view are hidden by its shape, as it was last drawn.
   probe(view, landmarks) {
     this.aim(view);
-    view.probe(landmarks, this.app.preferences.style === "points");
+    if (view.shape && (view.shape.isCloud || this.app.preferences.style === "points")) {
+      this.renderer.close(view.shape, CLOSED * view.camera.pixels(view.shape.meanEdge, view.box.width, view.box.height));
+    }
+    view.probe(landmarks);
   }
 }

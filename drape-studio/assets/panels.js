@@ -1,84 +1,34 @@
 // Everything beside the views: files, landmarks, settings, the drape and its figures.
 
-import { openFile } from "./link.js";
-import { markColour } from "./views.js";
+import { markColour } from "./colours.js";
+import { digitsOf, labelOf } from "./markers.js";
+import { weightField } from "./weights.js";
 
 const $ = (id) => document.getElementById(id);
 // Misses above this many hundredths of the longest side stand out.
 const FAR = 2;
 
 const COMMANDS = ["drape", "pause", "resume", "extend", "step", "stop", "reset"];
-const LANDMARKS = /\.(json|txt|pp|csv)$/i;
-export const FORMATS = ".obj,.ply,.off,.stl,.gltf,.glb,.xyz,.gz";
 
 export class Panels {
   constructor(app) {
     this.app = app;
     this.rows = new Map();
     const on = (id, event, action) => $(id).addEventListener(event, action);
-    on("open-source", "click", () => this.chooseFile("source"));
-    on("open-target", "click", () => this.chooseFile("target"));
-    on("open-landmarks", "click", () => this.chooseFile("landmarks"));
     for (const what of ["undo", "redo", "clear"]) on(what, "click", () => app.edit(what));
     for (const what of COMMANDS) on(what, "click", () => app.command(what));
     on("preset", "change", () => app.edit("preset", { name: $("preset").value }));
     on("seed", "change", () => app.edit("seed", { seed: Math.max(0, Math.min(4294967295, Math.round(Number($("seed").value) || 0))) }));
     for (const id of ["mirror", "mirror-source", "mirror-target"]) on(id, "change", () => this.mirror());
     on("settings", "click", () => this.editSettings());
-    on("toml-apply", "click", () => this.applySettings());
+    on("toml-apply", "click", async () => (await this.applySettings()) && $("settings-dialog").close());
+    on("settings-save", "click", () => this.saveSettings());
+    on("settings-forget", "click", () => this.app.edit("forget_settings", { name: $("settings-name").value.trim() }));
     document.addEventListener("click", (event) => {
-      if (!event.target.closest("#export-menu summary")) $("export-menu").open = false;
+      const own = event.target.closest(".menu");
+      document.querySelectorAll(".menu").forEach((menu) => menu !== own && (menu.open = false));
+      if (event.target.closest("#export-menu a")) $("export-menu").open = false;
     });
-    this.listenToDrops();
-  }
-
-  // A file dialog; tests put files into the same input.
-  chooseFile(role) {
-    const input = $("file");
-    input.accept = role === "landmarks" ? ".json,.txt,.pp,.csv" : FORMATS;
-    input.value = "";
-    input.onchange = () => input.files.length && this.open(role, input.files[0]);
-    input.click();
-  }
-
-  async open(role, file) {
-    this.app.words.say(`Opening ${file.name} as ${role}…`);
-    try {
-      await openFile(role, file);
-      this.app.words.say("");
-    } catch (error) {
-      this.app.words.complain(error);
-    }
-  }
-
-  listenToDrops() {
-    const viewOf = (event) => event.target.closest?.(".view");
-    const clear = () => document.querySelectorAll(".view").forEach((view) => view.classList.remove("is-target-of-drop"));
-    document.addEventListener("dragover", (event) => {
-      event.preventDefault();
-      clear();
-      viewOf(event)?.classList.add("is-target-of-drop");
-    });
-    document.addEventListener("dragleave", (event) => event.relatedTarget === null && clear());
-    document.addEventListener("drop", (event) => {
-      event.preventDefault();
-      clear();
-      this.openDropped([...(event.dataTransfer?.files ?? [])], viewOf(event)?.dataset.name);
-    });
-  }
-
-  // One shape goes where it is dropped, of two the first is the source; landmarks come after the shapes that they mark.
-  async openDropped(files, view) {
-    const shapes = files.filter((file) => !LANDMARKS.test(file.name));
-    const landmarks = files.filter((file) => LANDMARKS.test(file.name));
-    if (shapes.length > 2 || landmarks.length > 1) {
-      this.app.words.complain(new Error("drop a source, a target and one file of landmarks at most"));
-      return;
-    }
-    const free = this.app.state?.source ? "target" : "source";
-    const roles = shapes.length === 2 ? ["source", "target"] : [["source", "target"].includes(view) ? view : free];
-    for (const [k, file] of shapes.entries()) await this.open(roles[k], file);
-    for (const file of landmarks) await this.open("landmarks", file);
   }
 
   mirror() {
@@ -89,16 +39,47 @@ export class Panels {
   editSettings() {
     $("toml").value = this.app.state.settings.toml;
     $("toml-error").textContent = "";
+    $("settings-name").value = this.app.state.saved.present ?? "";
     $("settings-dialog").showModal();
+    $("toml").setSelectionRange(0, 0);
+    $("toml").scrollTop = 0;
   }
 
+  // Whether the text was taken as settings.
   async applySettings() {
+    return this.tryEdit({ do: "settings", toml: $("toml").value });
+  }
+
+  // The text as it stands, under a name.
+  async saveSettings() {
+    const name = $("settings-name").value.trim();
+    if ((await this.applySettings()) && (await this.tryEdit({ do: "save_settings", name }))) $("settings-dialog").close();
+  }
+
+  async tryEdit(edit) {
     try {
-      await this.app.link.ask("edit", { do: "settings", toml: $("toml").value });
-      $("settings-dialog").close();
+      await this.app.link.ask("edit", edit);
+      return true;
     } catch (error) {
       $("toml-error").textContent = error.message;
+      return false;
     }
+  }
+
+  // The presets of the program, then what was saved.
+  showPresets({ presets, saved, settings }) {
+    const key = JSON.stringify([presets, saved.names]);
+    if (this.presetsKey !== key) {
+      this.presetsKey = key;
+      const group = (label, names) => {
+        const element = Object.assign(document.createElement("optgroup"), { label });
+        element.append(...names.map((name) => new Option(name, name)));
+        return element;
+      };
+      const groups = saved.names.length > 0 ? [group("Presets", presets), group("Saved", saved.names)] : presets.map((name) => new Option(name, name));
+      $("preset").replaceChildren(...groups);
+    }
+    $("preset").value = saved.present ?? settings.preset;
   }
 
   // The state as the studio tells it.
@@ -118,10 +99,10 @@ export class Panels {
       link.setAttribute("aria-disabled", String(!can.export));
       link.tabIndex = can.export ? 0 : -1;
     }
-    if ($("preset").options.length !== state.presets.length) {
-      $("preset").replaceChildren(...state.presets.map((name) => new Option(name, name)));
-    }
-    $("preset").value = settings.preset;
+    this.showPresets(state);
+    const isPainted = Boolean(state.parts.weights) && !state.parts.weights.startsWith("property:");
+    $("export-weights").parentElement.hidden = !isPainted;
+    $("export-rigid").parentElement.hidden = !state.painted_rigid;
     if (document.activeElement !== $("seed")) $("seed").value = settings.seed;
     $("mirror").checked = Boolean(state.mirror);
     const axes = state.mirror ?? [state.source?.symmetry ?? 0, state.target?.symmetry ?? 0];
@@ -156,15 +137,17 @@ export class Panels {
     }
     landmarks.forEach((landmark, k) => {
       const row = this.rows.get(landmark.id) ?? this.addRow(landmark.id);
-      const label = landmark.name || `landmark ${k + 1}`;
-      row.number.textContent = k + 1;
+      const label = labelOf(landmark);
+      row.number.textContent = digitsOf(landmark);
       row.number.setAttribute("aria-label", `Choose ${label}`);
       if (document.activeElement !== row.name) row.name.value = landmark.name;
-      row.name.placeholder = !landmark.target ? "mark it on the target" : !landmark.source ? "mark it on the source" : `landmark ${k + 1}`;
-      row.name.setAttribute("aria-label", `Name of landmark ${k + 1}`);
+      row.name.placeholder = !landmark.target ? "mark it on the target" : !landmark.source ? "mark it on the source" : "name";
+      row.name.title = landmark.name;
+      row.name.setAttribute("aria-label", `Name of ${label}`);
       row.kind.textContent = landmark.kind;
       row.kind.setAttribute("aria-label", `${label} is ${landmark.kind}; change`);
       row.kind.dataset.kind = landmark.kind;
+      row.weight.show(landmark.weight, label);
       row.remove.setAttribute("aria-label", `Delete ${label}`);
       if (list.children[k] !== row.item) list.insertBefore(row.item, list.children[k] ?? null);
     });
@@ -172,7 +155,7 @@ export class Panels {
 
   addRow(id) {
     const make = (tag, name, text) => Object.assign(document.createElement(tag), { className: name, textContent: text });
-    const row = { item: make("li", "", ""), number: make("button", "number", ""), name: make("input", "", ""), miss: make("span", "miss", ""), kind: make("button", "", ""), remove: make("button", "", "×") };
+    const row = { item: make("li", "", ""), number: make("button", "number", ""), name: make("input", "", ""), miss: make("span", "miss", ""), weight: weightField(this.app, id), kind: make("button", "", ""), remove: make("button", "", "×") };
     row.name.type = "text";
     row.name.maxLength = 80;
     row.miss.title = "How far it is off, in hundredths of the target's longest side";
@@ -184,7 +167,7 @@ export class Panels {
     row.name.addEventListener("keydown", (event) => event.key === "Enter" && row.name.blur());
     row.kind.addEventListener("click", () => this.app.edit("kind", { landmark: id, kind: row.kind.dataset.kind === "soft" ? "rigid" : "soft" }));
     row.remove.addEventListener("click", () => this.app.edit("delete", { landmark: id }));
-    row.item.append(row.number, row.name, row.miss, row.kind, row.remove);
+    row.item.append(row.number, row.name, row.miss, row.weight.element, row.kind, row.remove);
     this.rows.set(id, row);
     return row;
   }
@@ -215,26 +198,45 @@ export class Panels {
     $("status").classList.toggle("is-bad", Boolean(run.error));
   }
 
-  showFigures(f) {
-    const entries = f ? [
-      ["Q", f.q.toFixed(3), "Fit and distortion together: 1 is perfect"],
-      ["Hausdorff", `${(100 * f.hausdorff).toFixed(2)} %`, "Largest distance, both ways, of the target's longest side"],
-      ["mean distance", `${(100 * f.mean_distance).toFixed(3)} %`, "Mean distances of both ways, added"],
-      ["Dirichlet", f.dirichlet.toFixed(3), "Stretch: 1 is none"],
-      ["angles", `${f.angle_deviation.toFixed(1)}°`, "Mean change of the corner angles"],
-      ["folds", f.folds, "Edges folded over"],
-      ["skinny", f.skinny, "Triangles of quality below 0.1"],
-      ["crossings", f.crossings, "Pairs of triangles that run through each other and did not in the source"],
-      ["landmarks", `${(100 * f.landmark_rms).toFixed(2)} %`, "Root mean square of what the landmarks are off"],
-    ] : [];
-    $("figures").replaceChildren(...entries.map(([name, value, title]) => {
+  // Those of other landmarks than the present ones are grey until the new ones come.
+  showFigures(f, { run, marks }) {
+    const isOld = Boolean(f) && f.marks !== marks && run.status !== "running";
+    $("figures").classList.toggle("is-old", isOld);
+    $("figures").title = isOld ? "Of the landmarks before; those of the present ones are on the way" : "";
+    const entries = f ? figuresOf(f) : [];
+    $("figures").replaceChildren(...entries.map(([name, value, title, kind = ""]) => {
       const item = document.createElement("div");
-      item.title = title;
+      [item.title, item.className] = [title, kind];
       item.append(Object.assign(document.createElement("dt"), { textContent: name }), Object.assign(document.createElement("dd"), { textContent: value }));
       return item;
     }));
   }
 }
+
+// What the footer says of a shape: name, value, what it means, and whether it is bad or for information only.
+const figuresOf = (f) => {
+  const isDraped = f.iteration !== null;
+  const percent = (x, digits) => `${(100 * x).toFixed(digits)} %`;
+  const isPartial = f.source_left_out + f.target_left_out > 0.005;
+  const over = isPartial ? ", over what has a counterpart" : "";
+  const bad = (n) => (isDraped && n > 0 ? "is-bad" : "");
+  const entries = [
+    ["Q", f.q.toFixed(3), `Fit and distortion together: 1 is perfect${over}`],
+    ["Hausdorff", percent(f.hausdorff, 2), `Largest distance, both ways, of the target's longest side${over}`],
+    ["mean distance", percent(f.mean_distance, 3), `Mean distances of both ways, added${over}`],
+    ["Dirichlet", f.dirichlet.toFixed(3), "Stretch: 1 is none"],
+    ["angles", `${f.angle_deviation.toFixed(1)}°`, "Mean change of the corner angles"],
+    ["flipped", f.flipped ?? "unknown", "Triangles that face against the target", bad(f.flipped)],
+    ["crossing", f.crossings, "Pairs of triangles that pass through each other and did not at rest", bad(f.crossings)],
+    ["folds", f.folds, "Edges folded over", bad(f.folds)],
+    ["skinny", f.skinny, "Triangles of quality below 0.1"],
+    ["landmarks", percent(f.landmark_rms, 2), "Root mean square of what the landmarks are off"],
+  ];
+  if (!isPartial) return entries;
+  const shares = [["source", f.source_left_out], ["target", f.target_left_out]].filter(([, share]) => share > 0.005);
+  const about = shares.map(([shape, share]) => `${percent(share, 0)} of the ${shape}`).join(", ");
+  return [...entries, ["left out", about, `Has no counterpart and is not counted; with it, the Hausdorff distance is ${percent(f.hausdorff_of_all, 1)}`, "is-soft"]];
+};
 
 const sentence = (text) => text.charAt(0).toUpperCase() + text.slice(1) + (/[.!?]$/.test(text) ? "" : ".");
 

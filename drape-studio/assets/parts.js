@@ -16,7 +16,8 @@ export class Parts {
   // The parts as the studio tells them.
   show({ source, parts, inner }) {
     const names = source?.parts ?? [];
-    $("parts-section").hidden = names.length + inner.length === 0;
+    $("parts-section").hidden = !source;
+    $("parts").hidden = names.length === 0;
     $("inner-section").hidden = inner.length === 0;
     const key = JSON.stringify([names, inner]);
     if (this.key !== key) {
@@ -86,8 +87,9 @@ export class Parts {
 
   // Parts that are not draped like the rest, and the one that is pointed out, have a colour in the source's view.
   async colour() {
-    const { views, stage, painter } = this.app;
-    if (!views.source.shape) return;
+    const { views, stage, painter, brush } = this.app;
+    // Weights that are painted have the colours then.
+    if (!views.source.shape || brush.isOn) return;
     const shown = Object.entries(this.ways).filter(([name, way]) => way !== "draped" || name === this.pointedOut);
     const hash = stage.hashes.source;
     if (this.triangles.hash !== hash) this.triangles = { hash, of: new Map() };

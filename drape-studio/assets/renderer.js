@@ -1,18 +1,26 @@
 // Draws shapes into parts of one canvas.
 
+import { RAMP } from "./heats.js";
+
 const VERTEX = `#version 300 es
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;
 layout(location = 2) in float value;
+layout(location = 3) in vec3 painted;
+layout(location = 4) in vec2 uv;
 uniform mat4 view, both;
 uniform float pointSize;
 out vec3 vNormal, vPlace;
 out float vValue;
+out vec3 vPainted;
+out vec2 vUv;
 void main() {
   gl_Position = both * vec4(position, 1.0);
   vPlace = (view * vec4(position, 1.0)).xyz;
   vNormal = mat3(view) * normal;
   vValue = value;
+  vPainted = painted;
+  vUv = uv;
   gl_PointSize = pointSize;
 }`;
 
@@ -20,9 +28,15 @@ const FRAGMENT = `#version 300 es
 precision highp float;
 in vec3 vNormal, vPlace;
 in float vValue;
+in vec3 vPainted;
+in vec2 vUv;
+uniform sampler2D picture;
+uniform int paint; // 0 none, 1 colours of vertices, 2 a picture
+uniform bool isMatcap;
 uniform vec4 colour;
-uniform vec3 ramp[5];
+uniform vec3 ramp[6];
 uniform vec2 range;
+uniform bool isGrey; // What has no value is grey
 uniform int mode; // 0 shaded, 1 plain, 2 heat, 3 points
 out vec4 fragment;
 void main() {
@@ -37,21 +51,32 @@ void main() {
   bool away = dot(n, -vPlace) < 0.0;
   if (away) n = -n;
   vec3 base = colour.rgb;
-  if (mode == 2 && vValue > -0.5) {
-    float t = clamp((vValue - range.x) / (range.y - range.x), 0.0, 1.0) * 4.0;
-    int k = min(int(t), 3);
+  if (mode == 2 && vValue > -1e-6) {
+    float t = clamp((vValue - range.x) / (range.y - range.x), 0.0, 1.0) * 5.0;
+    int k = min(int(t), 4);
     base = mix(ramp[k], ramp[k + 1], t - float(k));
+  } else if (mode == 2 && isGrey) {
+    base = vec3(0.62);
   }
   if (away && mode == 0 && !gl_FrontFacing) base = mix(base, vec3(0.45, 0.36, 0.34), 0.55);
+  bool isPainted = paint > 0 && mode != 2;
+  if (isPainted) base = paint == 1 ? vPainted : texture(picture, vUv).rgb;
+  if (isMatcap && mode == 0) {
+    // The curvature of the surface, in one over the longest side: what is hollow is darker, what bulges brighter.
+    float reach = max(1e-6, 0.5 * (length(dFdx(vPlace)) + length(dFdy(vPlace))));
+    float bulge = (dFdx(n.x) + dFdy(n.y)) / reach;
+    float tone = 0.22 + 0.62 * smoothstep(-0.5, 1.0, 0.45 * n.x + 0.75 * n.y + 0.5 * n.z) + 0.25 * pow(1.0 - abs(n.z), 3.0);
+    fragment = vec4(mix(vec3(0.72), base, 0.35) * clamp(tone * (1.0 + clamp(0.006 * bulge, -0.45, 0.35)), 0.0, 1.4), colour.a);
+    return;
+  }
   vec3 key = normalize(vec3(0.35, 0.6, 0.8));
   float light = 0.34 + 0.52 * max(dot(n, key), 0.0) + 0.16 * (0.5 + 0.5 * n.y);
+  // What was scanned has the light of its room in it.
+  if (isPainted) light = mix(light, 1.0, 0.65);
   vec3 half_ = normalize(key + normalize(-vPlace));
-  float shine = mode == 2 ? 0.0 : 0.10 * pow(max(dot(n, half_), 0.0), 32.0);
+  float shine = mode == 2 || isPainted ? 0.0 : 0.10 * pow(max(dot(n, half_), 0.0), 32.0);
   fragment = vec4(base * light + shine, colour.a);
 }`;
-
-// From good to bad; the legend in style.css has the same.
-const RAMP = [[0.16, 0.25, 0.55], [0.13, 0.55, 0.62], [0.45, 0.74, 0.42], [0.96, 0.80, 0.30], [0.86, 0.24, 0.18]].flat();
 
 const compile = (gl) => {
   const program = gl.createProgram();
@@ -72,41 +97,55 @@ export class Renderer {
     this.gl = canvas.getContext("webgl2", { antialias: true, alpha: false, preserveDrawingBuffer: true, powerPreference: "high-performance" });
     if (!this.gl) throw new Error("this browser shows no WebGL 2");
     this.program = compile(this.gl);
-    const names = ["view", "both", "pointSize", "colour", "ramp", "range", "mode"];
+    const names = ["view", "both", "pointSize", "colour", "ramp", "range", "mode", "isGrey", "picture", "paint", "isMatcap"];
     this.at = Object.fromEntries(names.map((name) => [name, this.gl.getUniformLocation(this.program, name)]));
   }
 
-  // Fits the canvas to its place on the page; whether everything has to be drawn again.
-  begin() {
+  // Fits the canvas to its size on the page; whether everything has to be drawn again.
+  begin(size) {
     const { gl, canvas } = this;
     const ratio = window.devicePixelRatio || 1;
-    const [width, height] = [Math.round(canvas.clientWidth * ratio), Math.round(canvas.clientHeight * ratio)];
+    const [width, height] = [Math.round(size.width * ratio), Math.round(size.height * ratio)];
     const isResized = canvas.width !== width || canvas.height !== height;
     if (isResized) [canvas.width, canvas.height] = [width, height];
+    this.ratio = ratio;
     gl.enable(gl.DEPTH_TEST);
     gl.depthFunc(gl.LEQUAL);
     gl.enable(gl.SCISSOR_TEST);
     gl.useProgram(this.program);
     gl.uniform3fv(this.at.ramp, RAMP);
+    gl.uniform1i(this.at.picture, 0);
     return isResized;
   }
 
   // Draws into a part of the canvas from now on, in pixels of the page from the canvas's corner.
   aim(box, matrices) {
     const { gl, canvas } = this;
-    const ratio = canvas.width / Math.max(1, canvas.clientWidth);
-    const rect = [box.left, canvas.clientHeight - box.top - box.height, box.width, box.height].map((x) => Math.round(x * ratio));
+    const { ratio } = this;
+    // Neighbours share the pixel between them: edges are rounded, not widths.
+    const [left, right] = [box.left, box.left + box.width].map((x) => Math.round(x * ratio));
+    const [top, bottom] = [box.top, box.top + box.height].map((y) => Math.round(y * ratio));
+    const rect = [left, canvas.height - bottom, right - left, bottom - top];
     gl.viewport(...rect);
     gl.scissor(...rect);
     gl.uniformMatrix4fv(this.at.view, false, matrices.view);
     gl.uniformMatrix4fv(this.at.both, false, matrices.both);
-    this.ratio = ratio;
   }
 
   clear(background) {
     const { gl } = this;
     gl.clearColor(...background, 1);
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
+  }
+
+  // Closes the gaps between points, for what lies behind them: nothing is seen of this.
+  close(shape, pixels) {
+    const { gl, at } = this;
+    this.points(shape);
+    gl.uniform1f(at.pointSize, Math.max(2, Math.min(64, pixels * this.ratio)));
+    gl.colorMask(false, false, false, false);
+    gl.drawArrays(gl.POINTS, 0, shape.positions.length / 3);
+    gl.colorMask(true, true, true, true);
   }
 
   // Lets points be counted that are not hidden, changing nothing.
@@ -144,12 +183,25 @@ export class Renderer {
     gl.vertexAttribPointer(location, size, gl.FLOAT, false, 0, 0);
   }
 
+  // What a shape is painted with: 0 nothing, 1 the colours of its vertices, 2 a picture.
+  brush(kind, paint) {
+    const { gl, at } = this;
+    this.attribute(3, null);
+    this.attribute(4, kind === 2 ? paint.buffers.uvs : null, 2);
+    if (kind === 1) {
+      gl.bindBuffer(gl.ARRAY_BUFFER, paint.buffers.colors);
+      gl.enableVertexAttribArray(3);
+      gl.vertexAttribPointer(3, 4, gl.UNSIGNED_BYTE, true, 0, 0);
+    }
+    gl.uniform1i(at.paint, kind);
+  }
+
   colour([r, g, b], alpha) {
     this.gl.uniform4f(this.at.colour, r, g, b, alpha);
   }
 
   // style: shaded, wire (shaded with edges), points; `ink` is how strong the edges are.
-  draw(shape, { style, colour, line, ink = 0, alpha = 1, range = null }) {
+  draw(shape, { style, look = "clay", colour, line, ink = 0, alpha = 1, range = null, isGrey = false }) {
     const { gl } = this;
     if (alpha <= 0) return;
     const isBlended = alpha < 1;
@@ -158,14 +210,19 @@ export class Renderer {
       gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
     }
     this.colour(colour, alpha);
-    if (shape.isCloud || style === "points") this.points(shape);
-    else this.surface(shape, isBlended, range);
+    gl.uniform1i(this.at.isMatcap, look === "matcap");
+    const paint = look === "scan" && !isBlended ? shape.paint : null;
+    if (shape.isCloud || style === "points") this.points(shape, paint);
+    else if (paint?.uvs && !(shape.values && range)) this.pictured(shape, paint);
+    else this.surface(shape, { isBlended, range, isGrey, paint });
+    this.brush(0);
     if (style === "wire" && !shape.isCloud && ink > 0) this.lines(shape, line, ink);
     gl.disable(gl.BLEND);
   }
 
-  points(shape) {
+  points(shape, paint = null) {
     const { gl, at } = this;
+    this.brush(paint?.colors ? 1 : 0, paint);
     this.attribute(0, shape.buffers.positions, 3);
     this.attribute(1, shape.buffers.normals, 3);
     this.attribute(2, null);
@@ -174,11 +231,40 @@ export class Renderer {
     gl.drawArrays(gl.POINTS, 0, shape.positions.length / 3);
   }
 
-  surface(shape, isBlended, range) {
+  // Triangles with pictures, and those without one.
+  pictured(shape, paint) {
     const { gl } = this;
+    shape.spread();
+    this.attribute(0, shape.buffers.spread, 3);
+    this.attribute(1, shape.buffers.spreadNormals, 3);
+    this.attribute(2, null);
+    gl.uniform1i(this.at.mode, 0);
+    gl.enable(gl.POLYGON_OFFSET_FILL);
+    gl.polygonOffset(1, 1);
+    const all = (ranges) => ranges.forEach(([from, to]) => gl.drawArrays(gl.TRIANGLES, 3 * from, 3 * (to - from)));
+    this.brush(0);
+    all(paint.bare);
+    this.brush(2, paint);
+    for (const { ranges, texture } of paint.pictures) {
+      gl.bindTexture(gl.TEXTURE_2D, texture);
+      all(ranges);
+    }
+    gl.disable(gl.POLYGON_OFFSET_FILL);
+  }
+
+  // Draws into the left share of a view from now on, over what is there.
+  cut(share) {
+    const { gl } = this;
+    const [x, y, width, height] = gl.getParameter(gl.SCISSOR_BOX);
+    gl.scissor(x, y, Math.round(width * share), height);
+  }
+
+  surface(shape, { isBlended, range, isGrey, paint }) {
+    const { gl } = this;
+    this.brush(paint?.colors && !(shape.values && range) ? 1 : 0, paint);
     const isHeat = shape.values && range;
     const isSpread = isHeat && shape.perTriangle;
-    if (isHeat) this.heat(shape, range);
+    if (isHeat) this.heat(shape, range, isGrey);
     else this.plain(shape);
     gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, shape.buffers.triangles);
     gl.enable(gl.POLYGON_OFFSET_FILL);
@@ -202,14 +288,15 @@ export class Renderer {
     this.gl.uniform1i(this.at.mode, 0);
   }
 
-  // Values between two ends as colours; those below −0.5 have none.
-  heat(shape, range) {
+  // Values between two ends as colours; those below 0 have none.
+  heat(shape, range, isGrey = false) {
     const { perTriangle, buffers } = shape;
     if (perTriangle) shape.spread();
     this.attribute(0, perTriangle ? buffers.spread : buffers.positions, 3);
     this.attribute(1, perTriangle ? buffers.spreadNormals : buffers.normals, 3);
     this.attribute(2, buffers.values, 1);
     this.gl.uniform2f(this.at.range, ...range);
+    this.gl.uniform1i(this.at.isGrey, isGrey);
     this.gl.uniform1i(this.at.mode, 2);
   }
 

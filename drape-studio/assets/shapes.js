@@ -27,20 +27,46 @@ const meanLength = (positions, edges) => {
   return sum / Math.max(1, n);
 };
 
+// About how far apart the points of a cloud are: as if they lay evenly over the surface of their box.
+const meanSpacing = (positions) => {
+  const [low, high] = extent(positions);
+  const [x, y, z] = low.map((l, c) => high[c] - l);
+  return Math.sqrt((2 * (x * y + y * z + z * x)) / Math.max(1, positions.length / 3));
+};
+
+// The lowest and the highest coordinates.
+const extent = (positions) => {
+  const [low, high] = [[Infinity, Infinity, Infinity], [-Infinity, -Infinity, -Infinity]];
+  for (let k = 0; k < positions.length; k++) {
+    low[k % 3] = Math.min(low[k % 3], positions[k]);
+    high[k % 3] = Math.max(high[k % 3], positions[k]);
+  }
+  return [low, high];
+};
+
+const BUFFERS = ["positions", "normals", "values", "triangles", "edges", "spread", "spreadNormals"];
+
 export class Shape {
   constructor(gl, { positions, triangles, edges, normals }) {
-    this.gl = gl;
     this.isCloud = triangles.length === 0;
-    [this.triangles, this.edges] = [triangles, edges];
+    [this.triangles, this.edges, this.positions] = [triangles, edges, positions];
     this.values = null;
     this.perTriangle = false;
-    this.buffers = Object.fromEntries(["positions", "normals", "values", "triangles", "edges", "spread", "spreadNormals"].map((name) => [name, gl.createBuffer()]));
-    this.index("triangles", triangles);
-    this.index("edges", edges);
+    this.paint = null;
     this.givenNormals = normals;
-    this.meanEdge = meanLength(positions, edges);
+    this.meanEdge = this.isCloud ? meanSpacing(positions) : meanLength(positions, edges);
     this.normals = normals ?? new Float32Array(positions.length);
-    this.move(positions);
+    this.upload(gl);
+  }
+
+  // Brings everything to a graphics card, which may be another or have lost what it had.
+  upload(gl) {
+    this.gl = gl;
+    this.buffers = Object.fromEntries(BUFFERS.map((name) => [name, gl.createBuffer()]));
+    this.index("triangles", this.triangles);
+    this.index("edges", this.edges);
+    this.move(this.positions);
+    this.colour(this.values, this.perTriangle);
   }
 
   index(name, rows) {
@@ -67,27 +93,45 @@ export class Shape {
 
   // Values to colour by: one per vertex, or one per triangle; none for the plain colour.
   colour(values, perTriangle) {
-    [this.values, this.perTriangle, this.isSpread] = [values, perTriangle, false];
-    if (values && !perTriangle) this.fill("values", values);
+    [this.values, this.perTriangle] = [values, perTriangle];
+    if (!values) return;
+    const { length } = this.triangles;
+    this.fill("values", perTriangle ? Float32Array.from({ length }, (_, k) => values[Math.floor(k / 3)]) : values);
   }
 
-  // Where every triangle has a colour of its own, it has corners of its own.
+  // Where every triangle has a colour or a place on a picture of its own, it has corners of its own.
   spread() {
     if (this.isSpread) return;
     const n = this.triangles.length;
-    const [p, m, v] = [new Float32Array(3 * n), new Float32Array(3 * n), new Float32Array(n)];
+    const [p, m] = [new Float32Array(3 * n), new Float32Array(3 * n)];
     for (let k = 0; k < n; k++) {
       const from = 3 * this.triangles[k];
       for (let c = 0; c < 3; c++) {
         p[3 * k + c] = this.positions[from + c];
         m[3 * k + c] = this.normals[from + c];
       }
-      v[k] = this.values[Math.floor(k / 3)];
     }
     this.fill("spread", p);
     this.fill("spreadNormals", m);
-    this.fill("values", v);
     this.isSpread = true;
+  }
+
+  // The value at a place; none where there are no values.
+  valueAt({ vertices, weights }) {
+    if (!this.values) return null;
+    if (this.perTriangle) return this.values[this.triangleOf(vertices)] ?? null;
+    const parts = vertices.map((v, k) => this.values[v] * weights[k]);
+    return vertices.some((v) => this.values[v] < 0) ? -1 : parts.reduce((sum, x) => sum + x, 0);
+  }
+
+  // The row of the triangle with some corners; the list is made when it is first needed.
+  triangleOf(corners) {
+    const key = (three) => [...three].sort((a, b) => a - b).join(" ");
+    if (!this.rowOf) {
+      const rows = this.triangles.length / 3;
+      this.rowOf = new Map(Array.from({ length: rows }, (_, k) => [key(this.triangles.subarray(3 * k, 3 * k + 3)), k]));
+    }
+    return this.rowOf.get(key(corners));
   }
 
   point(v) {
@@ -108,11 +152,7 @@ export class Shape {
 
   // The middle of the box and the distance of its corners.
   get bounds() {
-    const [low, high] = [[Infinity, Infinity, Infinity], [-Infinity, -Infinity, -Infinity]];
-    for (let k = 0; k < this.positions.length; k++) {
-      low[k % 3] = Math.min(low[k % 3], this.positions[k]);
-      high[k % 3] = Math.max(high[k % 3], this.positions[k]);
-    }
+    const [low, high] = extent(this.positions);
     const centre = low.map((x, c) => (x + high[c]) / 2);
     return { centre, radius: Math.hypot(...low.map((x, c) => (high[c] - x) / 2)) };
   }

@@ -1,8 +1,9 @@
 // The shapes in the views: loaded, moved, coloured.
 
+import { HEATS } from "./heats.js";
 import { fetchShape } from "./link.js";
+import { Paint, fetchPaint } from "./paint.js";
 import { length, subtract } from "./maths.js";
-import { HEATS } from "./painter.js";
 import { Shape } from "./shapes.js";
 
 const $ = (id) => document.getElementById(id);
@@ -29,14 +30,20 @@ export class Stage {
     this.hashes[name] = hash;
     [name, "result"].forEach((dropped) => this.drop(app.views.of(dropped)));
     app.setFigures(null);
+    const view = app.views.of(name);
+    view.wait(hash ? "Loading…" : "");
     if (!hash) return;
     try {
       const buffers = await fetchShape(name, hash);
       if (this.hashes[name] !== hash) return;
-      const view = app.views.of(name);
       view.shape = new Shape(app.painter.renderer.gl, buffers);
-      view.camera.home();
-      app.cameras.frame(view);
+      const paint = await fetchPaint(name, hash, about.looks);
+      if (this.hashes[name] !== hash) return;
+      if (paint) view.shape.paint = new Paint(app.painter.renderer.gl, paint, buffers.triangles.length / 3);
+      if (!app.memory.look(view)) {
+        view.camera.home();
+        app.cameras.frame(view);
+      }
       if (name === "source") app.parts.colour();
       this.takeShown();
       app.words.nameViews();
@@ -45,9 +52,12 @@ export class Stage {
       this.hashes[name] = undefined;
       app.words.complain(error);
     }
+    if (this.hashes[name] === hash) view.wait("");
   }
 
   drop(view) {
+    if (view.name !== "result") view.shape?.paint?.free();
+    else this.app.strip?.compare(null);
     view.shape?.free();
     view.shape = null;
     this.app.painter.invalidate(view);
@@ -95,27 +105,46 @@ export class Stage {
     } else {
       const { triangles, edges } = source.shape;
       result.shape = new Shape(app.painter.renderer.gl, { positions: shown.positions, triangles, edges, normals: null });
-      result.camera.look(target.camera.yaw, target.camera.pitch);
-      app.cameras.frame(result);
-      const isMarked = app.state.landmarks.filter((l) => l.source && l.target).length >= ENOUGH_TO_ALIGN;
-      if (isMarked) app.cameras.align();
+      result.shape.paint = source.shape.paint;
+      if (!app.memory.look(result)) this.lookAtResult();
     }
     this.askHeat();
   }
 
+  lookAtResult() {
+    const { app } = this;
+    const { target, result } = app.views;
+    result.camera.look(target.camera.yaw, target.camera.pitch);
+    app.cameras.frame(result);
+    const isMarked = app.landmarks.filter((l) => l.source && l.target).length >= ENOUGH_TO_ALIGN;
+    if (isMarked) app.cameras.align();
+  }
+
+  // The colours and the overlay of the page before it was loaded again.
+  remember({ heat = "", overlay = 0 }) {
+    if (overlay > 0) $("opacity").value = overlay;
+    if (heat in HEATS) this.setHeat(heat);
+  }
+
   askHeat() {
-    if (!this.heat || this.isHeatAsked || this.heatSerial === this.shown?.serial) return;
+    if (this.heat === "difference") return void this.showDifference();
+    if (!this.shown || !this.heat || this.isHeatAsked || this.heatSerial === this.shown?.serial) return;
     this.isHeatAsked = true;
     this.app.link.tell({ heat: this.heat });
+  }
+
+  // The map of differences needs no studio: the page has both shapes.
+  showDifference() {
+    const { shape } = this.app.views.result;
+    shape?.colour(this.app.strip.differences(shape.positions), false);
   }
 
   setHeat(heat) {
     const { views, painter } = this.app;
     [this.heat, this.heatSerial, this.isHeatAsked] = [heat, null, false];
     $("heat").value = heat;
-    $("legend").hidden = !heat;
-    if (heat) [, , $("legend-low").textContent, $("legend-high").textContent] = HEATS[heat];
-    else views.result.shape?.colour(null, false);
+    this.app.legend.show();
+    views.result.shape?.colour(null, false);
     this.askHeat();
     painter.invalidate();
   }

@@ -1,23 +1,25 @@
 // What the page says: titles, advice, complaints.
 
-import { FORMATS } from "./panels.js";
+import { FORMATS } from "./files.js";
 
 const $ = (id) => document.getElementById(id);
 const KINDS = ["Preview: the source brought to its landmarks", "", "Preview: how the drape goes on"];
 const BADGES = { running: "live", paused: "paused" };
 const DISCARDS = {
-  drape: "Another drape begins from the landmarks as they are. What this one came to cannot be brought back; export it first to keep it.",
-  reset: "What it came to cannot be brought back; export it first to keep it. Landmarks and settings stay.",
+  drape: "Another drape begins from the landmarks as they are. What this one came to goes to the kept results below the views, from where it can be brought back.",
+  reset: "What it came to goes to the kept results below the views, from where it can be brought back. Landmarks and settings stay.",
 };
 // How long a complaint stays, in milliseconds.
 const PATIENCE = 9000;
 
 // The next thing to do.
 const advice = ({ source, target, landmarks, run, can }) => {
-  const half = landmarks.find((l) => !l.source || !l.target);
+  const waiting = landmarks.filter((l) => !l.source || !l.target);
+  const half = waiting[0];
   if (!source && !target) return "Open or drop a source and a target to begin";
   if (!source) return "Now open or drop the source: the mesh to deform";
   if (!target) return "Now open or drop the target: the shape to drape over";
+  if (waiting.length > 1) return `Now click ${half.name ? `“${half.name}”` : "the chosen landmark"} on the ${half.source ? "target" : "source"}: ${waiting.length} wait for their places`;
   if (half) return `Now click the same place on the ${half.source ? "target" : "source"}`;
   if (can.pause) return "Mark or drag landmarks at any time: they take effect at once";
   if (run.pending) return "Resume: the drape goes on with what you changed";
@@ -43,8 +45,13 @@ export class Words {
   complain(error) {
     this.isSaying = false;
     this.advise();
+    this.note(error.message);
+  }
+
+  // Something the user should know, for a while.
+  note(text) {
     const toast = $("toast");
-    toast.textContent = error.message.charAt(0).toUpperCase() + error.message.slice(1);
+    toast.textContent = text.charAt(0).toUpperCase() + text.slice(1);
     toast.hidden = false;
     clearTimeout(this.timer);
     this.timer = setTimeout(() => (toast.hidden = true), PATIENCE);
@@ -98,7 +105,7 @@ export class Words {
     if (role) {
       const button = make("button", "Choose a file…");
       button.className = "main";
-      button.addEventListener("click", () => this.app.panels.chooseFile(role));
+      button.addEventListener("click", () => this.app.files.choose(role));
       view.empty.append(button, make("span", FORMATS.replaceAll(",", " ")));
     }
   }

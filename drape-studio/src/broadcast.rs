@@ -4,6 +4,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use axum::body::Bytes;
 use mesh_core::Positions;
+use mesh_metrics::Counterparts;
 use neural_drape::network::NetworkMap;
 use neural_drape::StepReport;
 use serde::{Deserialize, Serialize};
@@ -42,9 +43,20 @@ pub(crate) struct ShownShape {
 pub(crate) struct Provenance {
     pub(crate) log: RunLog,
     pub(crate) network: Option<NetworkMap>,
+    /// What of the two shapes is compared.
+    pub(crate) counterparts: Arc<Counterparts>,
 }
 
 impl ShownShape {
+    /// What of it and of the target is compared.
+    pub(crate) fn counterparts(&self) -> Arc<Counterparts> {
+        let known = self.provenance.as_ref();
+        known.map_or_else(
+            || Arc::new(Counterparts::all(self.positions.len())),
+            |p| Arc::clone(&p.counterparts),
+        )
+    }
+
     /// How many iterations led to it.
     pub(crate) fn iteration(&self) -> usize {
         self.provenance.as_ref().map_or(0, |p| p.log.iteration)

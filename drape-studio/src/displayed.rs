@@ -1,18 +1,20 @@
 //! Source and target as the studio holds them: what is draped, with what the page shows and picks on.
 
 use std::path::Path;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use anyhow::Result;
-use mesh_core::io::NamedFaces;
+use mesh_core::io::{read_mesh, Looks, NamedFaces};
 use mesh_core::{
     Location, MeshPoint, Point3, PolygonSoup, Positions, TargetSurface, TriangleBvh, Triangulation,
     UnitFrame, Vector3, VertexData, VertexId,
 };
 use mesh_draping::landmarks::{source_symmetry, target_symmetry};
-use mesh_draping::{Source, Target};
+use mesh_draping::{SnapPoints, Source, Target};
+use mesh_metrics::new_crossings;
 
 use crate::buffers::DisplayBuffers;
+use crate::looks::{DisplayedLooks, ShownTriangle};
 use crate::pick::{self, Ray};
 use crate::shapes::Shapes;
 
@@ -26,6 +28,7 @@ pub(crate) struct DisplayedPair {
     pub(crate) target: Arc<DisplayedTarget>,
     /// What is draped.
     pub(crate) shapes: Shapes,
+    /// Pairs of triangles of the source that pass through each other at rest; found once asked for.
 }
 
 /// A mesh to deform.
@@ -34,8 +37,10 @@ pub(crate) struct DisplayedSource {
     /// The frame of its view.
     pub(crate) frame: UnitFrame,
     pub(crate) buffers: DisplayBuffers,
+    pub(crate) looks: DisplayedLooks,
     /// The axis across which it is most nearly symmetric.
     pub(crate) symmetry: usize,
+    snap_points: OnceLock<SnapPoints>,
 }
 
 /// A shape to drape over.
@@ -44,9 +49,11 @@ pub(crate) struct DisplayedTarget {
     /// The frame of its view, and of the result's.
     pub(crate) frame: UnitFrame,
     pub(crate) buffers: DisplayBuffers,
+    pub(crate) looks: DisplayedLooks,
     /// The axis across which it is most nearly symmetric.
     pub(crate) symmetry: usize,
     picked: PickSurface,
+    snap_points: OnceLock<SnapPoints>,
 }
 
 /// What is seen and picked: all that is in the file.
@@ -62,6 +69,12 @@ impl DisplayedPair {
             source,
             target,
         }
+    }
+
+    /// How many pairs of triangles pass through each other at `x` and do not at rest.
+    pub(crate) fn new_crossings(&self, x: &Positions) -> usize {
+        let source = &self.shapes.source;
+        new_crossings(source.triangulation(), source.rest(), x).len()
     }
 }
 
@@ -86,7 +99,9 @@ impl DisplayedSource {
         let triangles = triangles.iter().map(|t| t.map(|v| row(&v)));
         Self {
             buffers: DisplayBuffers::of_mesh(&frame, &soup, triangles.collect()),
+            looks: source_looks(&source),
             symmetry: source_symmetry(&source).axis,
+            snap_points: OnceLock::new(),
             frame,
             source,
         }
@@ -149,6 +164,15 @@ impl DisplayedSource {
         self.source.place(location)
     }
 
+    /// What marks snap to, in the rows of the vertices.
+    pub(crate) fn snap_points(&self) -> &SnapPoints {
+        self.snap_points.get_or_init(|| {
+            let triangles = self.source.triangulation().triangles().iter();
+            let rows = triangles.map(|t| t.map(|v| v.index() as u32));
+            SnapPoints::of_faces(self.source.rest().as_slice().to_vec(), rows)
+        })
+    }
+
     /// The hierarchy of the triangles with the vertices at `x`.
     pub(crate) fn moved_bvh(&self, x: &Positions) -> TriangleBvh {
         let mut bvh = self.source.bvh().clone();
@@ -160,22 +184,40 @@ impl DisplayedSource {
 impl DisplayedTarget {
     /// Reads a target; a file without faces is a cloud.
     pub(crate) fn read(path: &Path) -> Result<Self> {
-        Self::new(Target::read(path)?)
+        let file = read_mesh(path)?;
+        let looks = file.looks();
+        Self::new(Target::of_file(file)?, looks)
     }
 
-    fn new(target: Target) -> Result<Self> {
+    fn new(target: Target, looks: Looks) -> Result<Self> {
         let frame = UnitFrame::of(target.judged().bounds());
-        let (picked, buffers) = if target.is_cloud() {
+        let (picked, buffers, shown) = if target.is_cloud() {
             cloud(target.vertices(), target.judged().as_ref(), &frame)
         } else {
             triangles(target.soup(), &frame)?
         };
+        let rows = 0..buffers.n_vertices;
         Ok(Self {
+            looks: DisplayedLooks::new(looks, &target.soup().faces, rows, &shown),
             symmetry: target_symmetry(&target).axis,
+            snap_points: OnceLock::new(),
             picked,
             frame,
             buffers,
             target,
+        })
+    }
+
+    /// What marks snap to.
+    pub(crate) fn snap_points(&self) -> &SnapPoints {
+        self.snap_points.get_or_init(|| match &self.picked {
+            PickSurface::Triangles(_) => {
+                let soup = self.target.soup();
+                SnapPoints::of_faces(soup.positions.clone(), &soup.faces)
+            }
+            PickSurface::Points(points) => {
+                SnapPoints::of_cloud(points.clone(), normals(points, self.judged()))
+            }
         })
     }
 
@@ -205,31 +247,72 @@ fn cloud(
     points: &[Point3],
     judged: &dyn TargetSurface,
     frame: &UnitFrame,
-) -> (PickSurface, DisplayBuffers) {
-    let closest = judged.closest_points(points);
-    let normals: Vec<Vector3> = closest
-        .iter()
-        .map(|c| judged.normal(&c.location).unwrap_or_default())
-        .collect();
-    let buffers = DisplayBuffers::of_cloud(frame, points, &normals);
-    (PickSurface::Points(points.to_vec()), buffers)
+) -> (PickSurface, DisplayBuffers, Vec<ShownTriangle>) {
+    let buffers = DisplayBuffers::of_cloud(frame, points, &normals(points, judged));
+    (PickSurface::Points(points.to_vec()), buffers, Vec::new())
 }
 
-fn triangles(soup: &PolygonSoup, frame: &UnitFrame) -> Result<(PickSurface, DisplayBuffers)> {
-    let triangles: Vec<[u32; 3]> = if soup.faces.iter().all(|f| f.len() == 3) {
-        soup.faces.iter().map(|f| [f[0], f[1], f[2]]).collect()
-    } else {
-        let (mesh, rest) = soup.clone().into_halfedge()?;
-        Triangulation::new(&mesh, &rest)
-            .triangles()
-            .iter()
-            .map(|t| t.map(|v| v.index() as u32))
-            .collect()
+/// The normals of a cloud at its points.
+fn normals(points: &[Point3], judged: &dyn TargetSurface) -> Vec<Vector3> {
+    let closest = judged.closest_points(points);
+    let normals = closest.iter().map(|c| judged.normal(&c.location));
+    normals.map(Option::unwrap_or_default).collect()
+}
+
+/// What is shown of the source as its file has it.
+fn source_looks(source: &Source) -> DisplayedLooks {
+    let Some(file) = source.file() else {
+        return DisplayedLooks::default();
     };
+    let t = source.triangulation();
+    // Of vertices that the file has several times, the corner of the face tells which one is meant.
+    let faces = &file.soup().faces;
+    let row_in = |face: usize, v: VertexId| {
+        let corners = faces.get(face).into_iter().flatten();
+        let mut corners = corners.map(|&row| row as usize);
+        corners
+            .find(|&row| source.vertex_at(row) == Some(v))
+            .unwrap_or_else(|| source.file_row(v))
+    };
+    let shown = t.triangles().iter().enumerate().map(|(k, corners)| {
+        let face = t.parent(k).index();
+        ShownTriangle {
+            face,
+            corners: corners.map(|v| row_in(face, v)),
+        }
+    });
+    let shown: Vec<ShownTriangle> = shown.collect();
+    let rows = source.rest().ids().map(|v| source.file_row(v));
+    DisplayedLooks::new(file.looks(), faces, rows, &shown)
+}
+
+fn triangles(
+    soup: &PolygonSoup,
+    frame: &UnitFrame,
+) -> Result<(PickSurface, DisplayBuffers, Vec<ShownTriangle>)> {
+    let (triangles, parents): (Vec<[u32; 3]>, Vec<usize>) =
+        if soup.faces.iter().all(|f| f.len() == 3) {
+            let corners = soup.faces.iter().map(|f| [f[0], f[1], f[2]]);
+            (corners.collect(), (0..soup.faces.len()).collect())
+        } else {
+            let (mesh, rest) = soup.clone().into_halfedge()?;
+            let t = Triangulation::new(&mesh, &rest);
+            let corners = t.triangles().iter();
+            let corners = corners.map(|c| c.map(|v| v.index() as u32)).collect();
+            (corners, (0..t.len()).map(|k| t.parent(k).index()).collect())
+        };
+    let shown = triangles
+        .iter()
+        .zip(parents)
+        .map(|(corners, face)| ShownTriangle {
+            face,
+            corners: corners.map(|v| v as usize),
+        });
+    let shown = shown.collect();
     let corners = triangles
         .iter()
         .map(|t| t.map(|v| soup.positions[v as usize]));
     let bvh = TriangleBvh::new(corners.collect());
     let buffers = DisplayBuffers::of_mesh(frame, soup, triangles);
-    Ok((PickSurface::Triangles(bvh), buffers))
+    Ok((PickSurface::Triangles(bvh), buffers, shown))
 }

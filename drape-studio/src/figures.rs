@@ -1,22 +1,22 @@
-//! The judge's figures of the shape that is shown, and its heat maps.
+//! The judge's figures of the shape that is shown.
 
 use std::sync::Arc;
 use std::thread;
 use std::time::{Duration, Instant};
 
-use mesh_core::measure::{corner_angle, triangle_normal};
 use mesh_core::{Landmark, Positions};
 use mesh_metrics::{
-    dirichlet_unit_area, face_stretch, folded_edges, hausdorff_sampled, mean_angle_deviation,
-    new_crossings, opposed_triangles, q_transfer, skinny_triangles, vertex_distances,
-    EvaluationConfig, SurfaceDistances, HAUSDORFF_WEIGHT, PAPER_TAU,
+    chamfer, dirichlet_unit_area, folded_edges, hausdorff_sampled, mean_angle_deviation,
+    opposed_triangles, q_transfer, skinny_triangles, Counterparts, EvaluationConfig,
+    HAUSDORFF_WEIGHT, PAPER_TAU,
 };
-use serde::Deserialize;
+use serde::Serialize;
 use serde_json::json;
 
-use crate::broadcast::{Broadcast, ShownShape};
+use crate::broadcast::Broadcast;
 use crate::displayed::DisplayedPair;
 use crate::latest::Latest;
+use crate::session::fingerprint;
 
 /// Samples per surface for live figures; the report takes more.
 const N_SAMPLES: usize = 20_000;
@@ -27,6 +27,8 @@ const REST: u32 = 4;
 pub(crate) struct FiguresJob {
     pub(crate) displayed: DisplayedPair,
     pub(crate) positions: Arc<Positions>,
+    /// What of the two shapes is compared.
+    pub(crate) counterparts: Arc<Counterparts>,
     pub(crate) landmarks: Vec<Landmark>,
     /// The iteration of the drape; none before it began.
     pub(crate) iteration: Option<usize>,
@@ -46,122 +48,89 @@ pub(crate) fn judge(broadcast: Arc<Broadcast>) -> Latest<FiguresJob> {
 }
 
 fn tell(broadcast: &Broadcast, job: &FiguresJob) {
-    let (source, target) = (&job.displayed.shapes.source, job.displayed.target.judged());
-    let (triangulation, rest, x) = (
-        source.triangulation(),
-        source.rest(),
-        job.positions.as_ref(),
-    );
-    let config = EvaluationConfig {
-        n_samples: N_SAMPLES,
-        seed: 0,
-    };
-    let distances = SurfaceDistances::measure(triangulation, x, target, &config);
-    let hausdorff = hausdorff_sampled(&distances);
-    let dirichlet = dirichlet_unit_area(triangulation, rest, x);
-    let q = q_transfer(dirichlet - 1.0, HAUSDORFF_WEIGHT * hausdorff, PAPER_TAU);
-    let mean = |d: &[f64]| d.iter().sum::<f64>() / d.len().max(1) as f64;
-    let misses = job.landmarks.iter().map(|l| {
-        (l.source.position(x) - l.target).norm()
-            / target.bounds().longest_side().max(f64::MIN_POSITIVE)
-    });
-    let squares: f64 = misses.map(|m| m * m).sum();
-    let message = json!({
-        "type": "figures",
-        "iteration": job.iteration,
-        "q": q,
-        "hausdorff": hausdorff,
-        "dirichlet": dirichlet,
-        "mean_distance": mean(&distances.to_target.of_samples) + mean(&distances.to_draped.of_samples),
-        "angle_deviation": mean_angle_deviation(triangulation, rest, x),
-        "folds": folded_edges(triangulation, rest, x).len(),
-        "skinny": skinny_triangles(triangulation, x).len(),
-        "crossings": new_crossings(triangulation, rest, x).len(),
-        "landmark_rms": (squares / job.landmarks.len().max(1) as f64).sqrt(),
-    });
+    let figures = Figures::of(job);
     if let Some(iteration) = job.iteration {
-        broadcast.record("Q", iteration, q);
+        broadcast.record("Q", iteration, figures.q);
+        broadcast.record("mean distance", iteration, figures.mean_distance);
     }
+    let mut message = json!(figures);
+    message["type"] = json!("figures");
+    message["iteration"] = json!(job.iteration);
+    message["marks"] = json!(fingerprint(&job.landmarks));
     broadcast
         .figures
         .send_replace(Arc::from(message.to_string()));
 }
 
-/// What a heat map shows.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub(crate) enum Heat {
-    /// Distance of each vertex from the target, in longest sides.
-    Distance,
-    /// Stretch of each face: 1 keeps its shape and its share of the area.
-    Stretch,
-    /// Mean change of each triangle's corner angles, in degrees.
-    Angle,
-    /// 1 for faces that turn against the target's normal.
-    Flipped,
+/// What pages show of a shape. Distances are in longest sides of the target's box, over what has a counterpart.
+#[derive(Serialize)]
+pub(crate) struct Figures {
+    q: f64,
+    hausdorff: f64,
+    /// The same over everything.
+    hausdorff_of_all: f64,
+    /// Those of both ways, added.
+    mean_distance: f64,
+    /// The shares of source and target that have no counterpart.
+    source_left_out: f64,
+    target_left_out: f64,
+    dirichlet: f64,
+    angle_deviation: f64,
+    folds: usize,
+    /// Triangles that face against the target; none where it tells no side.
+    flipped: Option<usize>,
+    /// Pairs of triangles that pass through each other and did not at rest.
+    crossings: usize,
+    skinny: usize,
+    landmark_rms: f64,
 }
 
-impl Heat {
-    /// The message that carries the map of a shape: four u32 (2, serial, kind, 1 where there is a value per triangle),
-    /// then f32 values.
-    pub(crate) fn message(self, displayed: &DisplayedPair, shown: &ShownShape) -> Vec<u8> {
-        let (values, is_per_triangle) = self.values(displayed, &shown.positions);
-        let mut bytes = Vec::with_capacity(16 + 4 * values.len());
-        for n in [2, shown.serial, self as u32, u32::from(is_per_triangle)] {
-            bytes.extend(n.to_le_bytes());
-        }
-        for value in values {
-            bytes.extend((value as f32).to_le_bytes());
-        }
-        bytes
-    }
-
-    fn values(self, displayed: &DisplayedPair, x: &Positions) -> (Vec<f64>, bool) {
-        let source = &displayed.shapes.source;
-        let (t, rest) = (source.triangulation(), source.rest());
-        match self {
-            Self::Distance => (
-                vertex_distances(x, displayed.target.judged()).into_vec(),
-                false,
-            ),
-            Self::Stretch => {
-                let stretch = face_stretch(t, rest, x);
-                ((0..t.len()).map(|k| stretch[t.parent(k)]).collect(), true)
-            }
-            Self::Angle => {
-                let pairs = t.corners(rest).zip(t.corners(x));
-                let mean = |(from, to): ([_; 3], [_; 3])| {
-                    let turn = |k: usize| {
-                        let angle = |c: [mesh_core::Point3; 3]| {
-                            corner_angle(c[k], c[(k + 1) % 3], c[(k + 2) % 3])
-                        };
-                        (angle(to) - angle(from)).abs()
-                    };
-                    ((0..3).map(turn).sum::<f64>() / 3.0).to_degrees()
-                };
-                (pairs.map(mean).collect(), true)
-            }
-            Self::Flipped => (flipped(displayed, x), true),
+impl Figures {
+    /// Judges a shape.
+    pub(crate) fn of(job: &FiguresJob) -> Self {
+        let (source, target) = (&job.displayed.shapes.source, job.displayed.target.judged());
+        let (t, rest, x) = (
+            source.triangulation(),
+            source.rest(),
+            job.positions.as_ref(),
+        );
+        let config = EvaluationConfig {
+            n_samples: N_SAMPLES,
+            seed: 0,
+        };
+        let counted = job.counterparts.distances(t, x, target, &config);
+        let hausdorff = hausdorff_sampled(&counted.distances);
+        let dirichlet = dirichlet_unit_area(t, rest, x);
+        let [there, back] = [&counted.distances.to_target, &counted.distances.to_draped];
+        Self {
+            q: q_transfer(dirichlet - 1.0, HAUSDORFF_WEIGHT * hausdorff, PAPER_TAU),
+            hausdorff,
+            hausdorff_of_all: if counted.mesh_left_out + counted.target_left_out > 0.0 {
+                counted.hausdorff_of_all
+            } else {
+                hausdorff
+            },
+            mean_distance: chamfer(there).mean_l2 + chamfer(back).mean_l2,
+            source_left_out: counted.mesh_left_out,
+            target_left_out: counted.target_left_out,
+            dirichlet,
+            angle_deviation: mean_angle_deviation(t, rest, x),
+            folds: folded_edges(t, rest, x).len(),
+            flipped: opposed_triangles(t, x, target).map(|opposed| opposed.len()),
+            crossings: job.displayed.new_crossings(x),
+            skinny: skinny_triangles(t, x).len(),
+            landmark_rms: landmark_rms(job),
         }
     }
 }
 
-/// 1 for triangles that face against the target, or against their neighbours where it tells no side.
-fn flipped(displayed: &DisplayedPair, x: &Positions) -> Vec<f64> {
-    let source = &displayed.shapes.source;
-    let t = source.triangulation();
-    let mut values = vec![0.0; t.len()];
-    let opposed = opposed_triangles(t, x, displayed.target.judged()).unwrap_or_default();
-    let folded = folded_edges(t, source.rest(), x);
-    let folded = folded.iter().flat_map(|edge| edge.triangles);
-    opposed
-        .into_iter()
-        .chain(folded)
-        .for_each(|k| values[k] = 1.0);
-    for (value, corners) in values.iter_mut().zip(t.corners(x)) {
-        if triangle_normal(corners).is_none() {
-            *value = 1.0;
-        }
-    }
-    values
+/// Root mean square of what the landmarks are off.
+fn landmark_rms(job: &FiguresJob) -> f64 {
+    let side = job.displayed.target.judged().bounds().longest_side();
+    let marked = Landmark::marked(&job.landmarks).filter(|l| l.is_followed());
+    let squares = marked.clone().map(|l| {
+        let miss = (l.source.position(&job.positions) - l.target).norm();
+        (miss / side.max(f64::MIN_POSITIVE)).powi(2)
+    });
+    (squares.sum::<f64>() / marked.count().max(1) as f64).sqrt()
 }

@@ -10,14 +10,18 @@
 //! newest of each and pass over older ones (`broadcast`). What is done to a drape is logged with the iteration
 //! (`logged_run`), so that [`replay`] comes to the same bits.
 
+mod address;
 mod broadcast;
 mod buffers;
 mod checkpoint;
 mod controller;
 mod displayed;
 mod figures;
+mod heat;
+mod kept_files;
 mod latest;
 mod logged_run;
+mod looks;
 mod pick;
 mod preview;
 mod replay;

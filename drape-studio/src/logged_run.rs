@@ -1,8 +1,9 @@
 //! A drape that keeps a log of what was done to it, so that it can be done again to the bit.
 
-use anyhow::{Context as _, Result};
+use anyhow::{ensure, Context as _, Result};
 use mesh_core::Positions;
-use mesh_draping::{Draping, Parts, Preset, Transfer};
+use mesh_draping::{Draping, Moves, Parts, Preset, Stroke, Transfer};
+use mesh_metrics::Counterparts;
 use neural_drape::network::NetworkMap;
 use neural_drape::{DrapeState, StepReport};
 
@@ -14,6 +15,16 @@ pub(crate) struct LoggedRun {
     shapes: Shapes,
     draping: Draping,
     log: RunLog,
+    /// What each stroke that holds moved, to take it back.
+    moves: Vec<Moves>,
+}
+
+/// What a drape has come to, to go on from later.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct SavedRun {
+    pub(crate) state: DrapeState,
+    /// What each stroke that holds moved.
+    pub(crate) moves: Vec<Moves>,
 }
 
 impl LoggedRun {
@@ -22,6 +33,7 @@ impl LoggedRun {
         Ok(Self {
             draping: begin(shapes, &log)?,
             shapes: shapes.clone(),
+            moves: Vec::new(),
             log: RunLog {
                 events: Vec::new(),
                 iteration: 0,
@@ -30,11 +42,16 @@ impl LoggedRun {
         })
     }
 
-    /// The drape of `log` as it was when `state` was saved, at the end of the log.
-    pub(crate) fn restored(shapes: &Shapes, log: RunLog, state: &DrapeState) -> Result<Self> {
+    /// The drape of `log` as it was when it was saved, at the end of the log.
+    pub(crate) fn restored(shapes: &Shapes, log: RunLog, saved: &SavedRun) -> Result<Self> {
+        ensure!(
+            log.strokes().len() == saved.moves.len(),
+            "the drape is saved with strokes that it does not have"
+        );
         let mut run = Self {
-            draping: restore(shapes, &log, state)?,
+            draping: restore(shapes, &log, &saved.state)?,
             shapes: shapes.clone(),
+            moves: saved.moves.clone(),
             log,
         };
         run.note(Change::Rebuilt);
@@ -53,6 +70,8 @@ impl LoggedRun {
             match &event.change {
                 Change::Landmarks(marks) => run.set_marks(marks.clone())?,
                 Change::Parts(parts) => run.set_parts(parts.clone())?,
+                Change::Brushed(stroke) => run.brush(stroke.clone())?,
+                Change::Unbrushed => run.unbrush()?,
                 Change::Extended(n) => run.extend(*n),
                 Change::Rebuilt => run.rebuild()?,
             }
@@ -82,7 +101,8 @@ impl LoggedRun {
 
     /// Goes on with other landmarks.
     pub(crate) fn set_marks(&mut self, marks: Vec<Mark>) -> Result<()> {
-        self.draping.set_landmarks(landmarks(&marks))?;
+        let landmarks = landmarks(&marks, &self.shapes.source);
+        self.draping.set_landmarks(landmarks)?;
         self.note(Change::Landmarks(marks));
         Ok(())
     }
@@ -91,6 +111,33 @@ impl LoggedRun {
     pub(crate) fn set_parts(&mut self, parts: Parts) -> Result<()> {
         self.draping.set_regions(self.shapes.regions(&parts)?)?;
         self.note(Change::Parts(parts));
+        Ok(())
+    }
+
+    /// Goes on with other strokes: those that hold no longer are taken back, the newest first, and new ones are done.
+    pub(crate) fn set_strokes(&mut self, strokes: &[Stroke]) -> Result<()> {
+        let known = self.log.strokes().into_iter();
+        let n_kept = known.zip(strokes).take_while(|(a, b)| *a == *b).count();
+        while self.moves.len() > n_kept {
+            self.unbrush()?;
+        }
+        for stroke in &strokes[n_kept..] {
+            self.brush(stroke.clone())?;
+        }
+        Ok(())
+    }
+
+    fn brush(&mut self, stroke: Stroke) -> Result<()> {
+        self.moves.push(self.draping.brush(&stroke)?);
+        self.note(Change::Brushed(stroke));
+        Ok(())
+    }
+
+    fn unbrush(&mut self) -> Result<()> {
+        let moves = self.moves.pop();
+        let moves = moves.context("the session takes back a stroke that was never done")?;
+        self.draping.displace(&moves.reversed())?;
+        self.note(Change::Unbrushed);
         Ok(())
     }
 
@@ -128,8 +175,17 @@ impl LoggedRun {
         self.draping.network()
     }
 
-    pub(crate) fn state(&mut self) -> DrapeState {
-        self.draping.state()
+    /// What of the two shapes is compared.
+    pub(crate) fn counterparts(&self) -> Counterparts {
+        self.draping.counterparts()
+    }
+
+    /// What it has come to.
+    pub(crate) fn saved(&mut self) -> SavedRun {
+        SavedRun {
+            state: self.draping.state(),
+            moves: self.moves.clone(),
+        }
     }
 
     pub(crate) fn log(&self) -> &RunLog {
@@ -152,9 +208,12 @@ impl LoggedRun {
 /// The drape of a log at its start.
 fn begin(shapes: &Shapes, log: &RunLog) -> Result<Draping> {
     let preset = Preset::from_toml(&log.settings)?;
-    let transfer = Transfer::of_pair(shapes.pair(landmarks(&log.landmarks)), preset)
-        .with_regions(shapes.regions(&log.parts)?)
-        .without_stand_in();
+    let transfer = Transfer::of_pair(
+        shapes.pair(landmarks(&log.landmarks, &shapes.source)),
+        preset,
+    )
+    .with_regions(shapes.regions(&log.parts)?)
+    .without_stand_in();
     Ok(transfer.start()?)
 }
 
@@ -162,6 +221,7 @@ fn begin(shapes: &Shapes, log: &RunLog) -> Result<Draping> {
 fn restore(shapes: &Shapes, log: &RunLog, state: &DrapeState) -> Result<Draping> {
     let mut draping = begin(shapes, log)?;
     let regions = shapes.regions(log.last_parts())?;
-    draping.restore(state, landmarks(log.last_landmarks()), regions)?;
+    let landmarks = landmarks(log.last_landmarks(), &shapes.source);
+    draping.restore(state, landmarks, regions)?;
     Ok(draping)
 }

@@ -6,9 +6,9 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use mesh_core::{Landmark, Positions};
-use mesh_draping::landmarks::Finding;
 use mesh_draping::{adjusted, initial_deformation, Error, InitialMethod, Note, Source};
 use mesh_init::{InitConfig, InteractiveInit};
+use mesh_metrics::Counterparts;
 
 use crate::broadcast::{Broadcast, ShownKind};
 use crate::displayed::DisplayedPair;
@@ -40,8 +40,6 @@ pub(crate) struct PreviewJob {
     pub(crate) displayed: DisplayedPair,
     pub(crate) method: InitialMethod,
     pub(crate) landmarks: Vec<Landmark>,
-    /// The number of each landmark's marker.
-    pub(crate) numbers: Vec<usize>,
     pub(crate) shown: PreviewOf,
     /// The number of the newest job: an older one is not shown any more.
     pub(crate) newest: Arc<AtomicU32>,
@@ -162,6 +160,7 @@ fn show(job: &PreviewJob, broadcast: &Broadcast) -> Result<Vec<Note>, Error> {
     broadcast.show(&job.displayed, kind, Arc::clone(&x));
     job.figures.ask(FiguresJob {
         displayed: job.displayed.clone(),
+        counterparts: Arc::new(Counterparts::all(x.len())),
         positions: x,
         landmarks: job.landmarks.clone(),
         iteration: None,
@@ -174,38 +173,8 @@ fn show(job: &PreviewJob, broadcast: &Broadcast) -> Result<Vec<Note>, Error> {
 fn warnings(job: &PreviewJob) -> Vec<String> {
     let pair = job.displayed.shapes.pair(job.landmarks.clone());
     let findings = pair.findings().into_iter();
-    let findings = findings.map(|finding| numbered(finding, &job.numbers).to_string());
+    let findings = findings.map(|finding| finding.to_string());
     let notes = pair.notes();
     let left_out = notes.iter().map(ToString::to_string);
     findings.chain(left_out).collect()
-}
-
-/// The finding with the numbers of the markers in the place of rows.
-fn numbered(mut finding: Finding, numbers: &[usize]) -> Finding {
-    for label in finding.labels_mut() {
-        label.index = numbers.get(label.index).copied().unwrap_or(label.index);
-    }
-    finding
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use mesh_draping::landmarks::Label;
-
-    #[test]
-    fn landmarks_have_the_numbers_of_their_markers() {
-        // The second marker is of a landmark that is half made.
-        let numbers = [1, 3];
-        let exchanged = Finding::Exchanged {
-            a: Label::new(0, Some("nose")),
-            b: Label::new(1, None),
-        };
-        assert_eq!(
-            numbered(exchanged, &numbers).to_string(),
-            "landmark 1 (nose) and landmark 3 are probably exchanged"
-        );
-        let few = Finding::Few { n: 1 };
-        assert_eq!(numbered(few.clone(), &numbers), few);
-    }
 }

@@ -68,7 +68,7 @@ pub fn replay(path: &Path, mut show: impl FnMut(&StepReport)) -> Result<Replayed
     })
     .with_context(name)?;
     Ok(Replayed {
-        pair: shapes.pair(landmarks(log.last_landmarks())),
+        pair: shapes.pair(landmarks(log.last_landmarks(), &shapes.source)),
         preset: run.preset().clone(),
         initial: run.initial().clone(),
         draped: run.positions(),

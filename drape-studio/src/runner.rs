@@ -7,8 +7,8 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use anyhow::{ensure, Result};
-use mesh_draping::{Draping, Parts};
-use neural_drape::{DrapeState, StepReport};
+use mesh_draping::{Draping, Parts, Stroke};
+use neural_drape::StepReport;
 use serde_json::json;
 
 use crate::broadcast::{Broadcast, Provenance};
@@ -16,7 +16,7 @@ use crate::checkpoint::{self, Checkpoint, History};
 use crate::displayed::DisplayedPair;
 use crate::figures::FiguresJob;
 use crate::latest::Latest;
-use crate::logged_run::LoggedRun;
+use crate::logged_run::{LoggedRun, SavedRun};
 use crate::session::{landmarks, Mark, RunLog};
 
 /// Shapes are shown at most this often.
@@ -33,8 +33,12 @@ pub(crate) enum Order {
     Step,
     Marks(Vec<Mark>),
     Parts(Parts),
+    /// These strokes of brushes hold.
+    Strokes(Vec<Stroke>),
     /// It gets more iterations.
     Extend,
+    /// To stand still, shown and saved, and to say so here.
+    Rest(Sender<()>),
 }
 
 /// What the thread tells.
@@ -60,7 +64,7 @@ pub(crate) struct RunnerParts {
     pub(crate) checkpoint: PathBuf,
     pub(crate) log: RunLog,
     /// Where to go on; from the start where there is none.
-    pub(crate) state: Option<DrapeState>,
+    pub(crate) saved: Option<SavedRun>,
 }
 
 /// A handle on the thread; when this is dropped, it shows and saves nothing any more, and ends.
@@ -109,8 +113,8 @@ fn run(
     tell: &dyn Fn(Update),
 ) -> Result<()> {
     let shapes = &parts.displayed.shapes;
-    let drape = match &parts.state {
-        Some(state) => LoggedRun::restored(shapes, parts.log.clone(), state)?,
+    let drape = match &parts.saved {
+        Some(saved) => LoggedRun::restored(shapes, parts.log.clone(), saved)?,
         None => LoggedRun::replayed(shapes, &parts.log, |step| {
             ensure!(*lock(is_wanted), "the drape was given up");
             parts.broadcast.record_step(step);
@@ -182,6 +186,13 @@ impl Run<'_> {
                     self.rest(Update::Paused(self.drape.log().clone()))?;
                 }
                 Some(Order::Pause) => {}
+                Some(Order::Rest(rested)) => {
+                    if std::mem::take(&mut is_running) {
+                        self.rest(Update::Paused(self.drape.log().clone()))?;
+                    }
+                    // Whoever asked may have lost patience.
+                    rested.send(()).ok();
+                }
                 Some(Order::Step) => {
                     is_running = false;
                     if self.advance()? {
@@ -227,6 +238,10 @@ impl Run<'_> {
             Order::Parts(parts) if parts != *self.drape.log().last_parts() => {
                 self.drape.set_parts(parts)?;
             }
+            Order::Strokes(strokes) if !self.drape.log().strokes().into_iter().eq(&strokes) => {
+                self.drape.set_strokes(&strokes)?;
+                self.judge(true);
+            }
             Order::Extend => self.drape.extend(self.n_more),
             _ => return Ok(()),
         }
@@ -252,6 +267,7 @@ impl Run<'_> {
         let provenance = Provenance {
             log: drape.log().clone(),
             network: drape.network(),
+            counterparts: Arc::new(drape.counterparts()),
         };
         let is_wanted = lock(self.is_wanted);
         if *is_wanted {
@@ -265,7 +281,8 @@ impl Run<'_> {
         self.parts.figures.ask(FiguresJob {
             displayed: self.parts.displayed.clone(),
             positions: Arc::new(self.drape.positions()),
-            landmarks: landmarks(log.last_landmarks()),
+            counterparts: Arc::new(self.drape.counterparts()),
+            landmarks: landmarks(log.last_landmarks(), &self.parts.displayed.shapes.source),
             iteration: Some(log.iteration),
             is_resting,
         });
@@ -274,7 +291,7 @@ impl Run<'_> {
 
     fn save(&mut self) -> Result<()> {
         let checkpoint = Checkpoint {
-            state: self.drape.state(),
+            saved: self.drape.saved(),
             history: History {
                 log: self.drape.log().clone(),
                 curves: self.parts.broadcast.curves(),

@@ -1,13 +1,14 @@
 //! Opening and serving a studio.
 
 use std::fs;
-use std::net::{Ipv4Addr, SocketAddr, TcpListener};
+use std::net::TcpListener;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use anyhow::{anyhow, ensure, Context as _, Result};
 use mesh_draping::{landmarks, Preset};
 
+use crate::address::listen;
 use crate::broadcast::Broadcast;
 use crate::controller::{Controller, ControllerParts};
 use crate::displayed::{DisplayedSource, DisplayedTarget};
@@ -29,7 +30,7 @@ pub struct Options {
     pub session: PathBuf,
     /// Whether a session that is kept there is dropped.
     pub is_fresh: bool,
-    /// Port of the server; a free one where it is 0.
+    /// Port of the server; where it is 0 the one that the session had, or a free one.
     pub port: u16,
 }
 
@@ -69,9 +70,7 @@ impl Studio {
         }
         session.write(&options.session)?;
 
-        let listener = TcpListener::bind(SocketAddr::from((Ipv4Addr::LOCALHOST, options.port)))
-            .with_context(|| format!("port {} cannot be opened", options.port))?;
-        let guard = Guard::new(listener.local_addr()?)?;
+        let (listener, guard) = listen(&options.session, options.port)?;
         let url = format!("http://{}/{}/", listener.local_addr()?, guard.token());
         let broadcast = Arc::new(Broadcast::new());
         let controller = Controller::start(ControllerParts {
@@ -82,9 +81,8 @@ impl Studio {
             session_path: options.session.clone(),
             notice,
         })?;
-        let uploads = options.session.with_extension("files");
         Ok(Self {
-            app: App::new(controller, broadcast, uploads),
+            app: App::new(controller, broadcast, &options.session),
             listener,
             guard,
             url,

@@ -9,6 +9,7 @@
 //! | measure polygons as triangles, ask what touches what | [`Triangulation::new`] |
 //! | query a target | [`TriangleSoup::new`], [`PointCloud::new`], [`TargetSurface`] |
 //! | query a moving mesh | [`TriangleBvh`] |
+//! | tell what a map of a surface does to directions | [`map_gradients`] |
 //! | draw random places | [`sampling::TriangleSampler`], [`sampling::SeededRng`] |
 //! | mark pairs of places | [`Landmark`] |
 //! | let a coarse mesh stand in for a dense one | [`Proxy`] |
@@ -30,6 +31,7 @@ mod build;
 pub mod bvh;
 mod error;
 mod fans;
+mod gradients;
 mod halfedge;
 mod ids;
 pub mod io;
@@ -53,9 +55,10 @@ pub use boundary::Boundary;
 pub use bvh::TriangleBvh;
 pub use error::TopologyError;
 pub use fans::{is_on_side, TriangleFans, ON_SIDE};
+pub use gradients::map_gradients;
 pub use halfedge::HalfedgeMesh;
 pub use ids::{EdgeId, FaceId, HalfedgeId, Id, VertexId};
-pub use landmark::{Landmark, LandmarkKind, MeshPoint};
+pub use landmark::{Curve, CurveShare, Landmark, LandmarkKind, MeshPoint};
 pub use measure::{Aabb, UnitFrame};
 pub use profile::{Clock, Profile, Span};
 pub use proxy::Proxy;
@@ -63,8 +66,8 @@ pub use rotation::nearest_rotation;
 pub use rows::Rows;
 pub use soup::PolygonSoup;
 pub use surface::{
-    Denoised, Location, NormalSign, PointCloud, Strays, SurfacePoint, SurfaceSample, SurfelCloud,
-    TargetSurface, TriangleSoup,
+    Denoised, Location, NormalSign, Patches, PointCloud, Strays, SurfacePoint, SurfaceSample,
+    SurfelCloud, TargetSurface, TriangleSoup,
 };
 pub use triangulation::{Pieces, Triangulation, TriangulationEdge};
 pub use union_find::UnionFind;

@@ -36,6 +36,14 @@ impl PolygonSoup {
         Ok((mesh, Positions::from(self.positions)))
     }
 
+    /// Adds another shape as pieces of its own: its vertices and faces come after those that are there.
+    pub fn append(&mut self, other: Self) {
+        let n = self.positions.len() as u32;
+        self.positions.extend(other.positions);
+        let moved = |face: Vec<u32>| face.into_iter().map(|v| v + n).collect();
+        self.faces.extend(other.faces.into_iter().map(moved));
+    }
+
     /// Every coordinate is finite and every face names vertices that exist.
     ///
     /// # Errors

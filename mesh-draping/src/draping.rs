@@ -2,17 +2,18 @@
 
 use mesh_core::{Landmark, Positions};
 use mesh_init::InitInput;
+use mesh_metrics::Counterparts;
 use neural_drape::network::NetworkMap;
 use neural_drape::{
     Drape, DrapeConfig, DrapeError, DrapeInput, DrapeState, Regions, Repair, StepReport,
 };
 
 use crate::ending::{decided_overlap, left_out, repaired};
-use crate::explain::Counted;
 use crate::stages::{DRAPING, REFINING};
 use crate::stand_in::StandIn;
 use crate::start::Start;
-use crate::{Error, History, Note, Outcome, Pair, Preset, Stages};
+use crate::symmetric::Opposites;
+use crate::{BrushInput, Error, History, Moves, Note, Outcome, Pair, Preset, Stages, Stroke};
 
 /// Iterations on a dense source itself, after its stand-in was draped.
 const N_REFINING: usize = 60;
@@ -45,7 +46,9 @@ pub struct Draping {
     preset: Preset,
     truth: Option<Positions>,
     regions: Regions,
-    /// Where it started, in the target's coordinates.
+    /// The source brought to its landmarks, in the target's coordinates.
+    by_landmarks: Positions,
+    /// Where it started, likewise.
     initial: Positions,
     drape: Drape,
     /// What is draped in the place of the source, as long as it is.
@@ -58,6 +61,8 @@ pub struct Draping {
     notes: Vec<Note>,
     history: History,
     stages: Stages,
+    /// Where the result shall be symmetric.
+    opposites: Option<Opposites>,
 }
 
 /// What a drape starts from beside its pair.
@@ -67,6 +72,9 @@ pub(crate) struct Beginning {
     pub(crate) notes: Vec<Note>,
     pub(crate) truth: Option<Positions>,
     pub(crate) stages: Stages,
+    /// A shape that nearly fits, where one is known.
+    pub(crate) start: Option<Positions>,
+    pub(crate) is_symmetric: bool,
     pub(crate) is_stand_in_allowed: bool,
 }
 
@@ -79,10 +87,15 @@ impl Draping {
             mut notes,
             truth,
             mut stages,
+            start,
+            is_symmetric,
             is_stand_in_allowed,
         } = beginning;
+        let opposites = is_symmetric.then(|| Opposites::of(&pair.source));
+        let opposites = opposites.transpose()?;
         pair.check_landmarks(&pair.landmarks)?;
         pair.check_lengths(&regions, truth.as_ref())?;
+        pair.check_start(start.as_ref())?;
         let is_dense = is_stand_in_allowed && StandIn::is_needed(&pair, &preset);
         let stand_in = is_dense.then(|| stages.time("stand-in", || StandIn::new(&pair)));
         let stand_in = stand_in.transpose()?;
@@ -93,9 +106,11 @@ impl Draping {
         };
         let Start {
             shape,
+            by_landmarks,
             drape: config,
-        } = stages.time("initial deformation", || {
-            Start::choose(draped_pair, &preset, &first_regions)
+        } = stages.time("initial deformation", || match &start {
+            Some(shape) => Start::of_shape(draped_pair, &preset, shape),
+            None => Start::choose(draped_pair, &preset, &first_regions),
         })?;
         let initial = shape.positions;
         notes.extend(shape.notes);
@@ -104,11 +119,13 @@ impl Draping {
                 set_up(draped_pair, config, &initial, &first_regions)
             })
         })?;
+        let (by_landmarks, initial) = match &stand_in {
+            Some(stand_in) => stand_in.carry_both(by_landmarks, initial),
+            None => (by_landmarks, initial),
+        };
         let mut draping = Self {
-            initial: match &stand_in {
-                Some(stand_in) => stand_in.carry(&initial),
-                None => initial,
-            },
+            by_landmarks,
+            initial,
             n_after: if stand_in.is_some() { N_REFINING } else { 0 },
             n_before: 0,
             pair,
@@ -120,6 +137,7 @@ impl Draping {
             notes,
             history: History::default(),
             stages,
+            opposites,
         };
         draping.drape.set_profile(draping.stages.fresh_parts());
         Ok(draping)
@@ -236,9 +254,25 @@ impl Draping {
         &self.notes
     }
 
-    /// The network that moves the vertices; none where there is none, or where it alone does not.
+    /// Which parts of either shape the run takes as having a counterpart on the other.
+    pub fn counterparts(&self) -> Counterparts {
+        let overlap = self.drape.overlap();
+        let attraction = match &self.stand_in {
+            Some(_) => &self.regions.attraction,
+            None => self.drape.attraction(),
+        };
+        Counterparts {
+            of_vertices: attraction.map(|&a| a > 0.0),
+            target_ends: overlap.mesh_exceeds,
+            mesh_ends: overlap.target_exceeds,
+        }
+    }
+
+    /// The network that moves the vertices; none where there is none, or where it alone does not, as where the result is made
+    /// symmetric.
     pub fn network(&self) -> Option<NetworkMap> {
-        self.drape.network()
+        let is_alone = self.opposites.is_none();
+        is_alone.then(|| self.drape.network()).flatten()
     }
 
     /// Goes on with other landmarks: they deform the present shape, and the run gets more iterations if few are left.
@@ -290,6 +324,41 @@ impl Draping {
             Some(stand_in) => self.drape.set_regions(&stand_in.regions(regions)),
             None => self.drape.set_regions(regions),
         }
+    }
+
+    /// Brushes the present shape, as [`Self::positions`] tells it; the drape goes on from there. Rigid regions stay as they
+    /// are. What moved comes back, for [`Self::displace`] to take it back. The run gets no more iterations by this.
+    ///
+    /// # Errors
+    /// A stroke whose numbers no brush has; nothing moved.
+    pub fn brush(&mut self, stroke: &Stroke) -> Result<Moves, Error> {
+        stroke.check()?;
+        let mut brushed = self.positions();
+        let input = BrushInput {
+            pair: &self.pair,
+            held: &self.regions.rigid,
+        };
+        stroke.apply(input, &mut brushed);
+        let present = match &self.stand_in {
+            Some(stand_in) => stand_in.carry(&self.drape.positions()),
+            None => self.drape.positions(),
+        };
+        let moves = Moves::between(&present, &brushed);
+        self.displace(&moves)?;
+        Ok(moves)
+    }
+
+    /// Moves vertices, in the target's coordinates; the drape goes on from there.
+    ///
+    /// # Errors
+    /// A move that is not finite; nothing moved.
+    pub fn displace(&mut self, moves: &Moves) -> Result<(), Error> {
+        let moves = moves.spread(self.pair.source.rest().len());
+        match &self.stand_in {
+            Some(stand_in) => self.drape.displace(&stand_in.moves(&moves))?,
+            None => self.drape.displace(&moves)?,
+        }
+        Ok(())
     }
 
     /// Gives the run more iterations.
@@ -356,6 +425,10 @@ impl Draping {
             Some(stand_in) => stand_in.carry(&end.positions),
             None => end.positions.clone(),
         };
+        let draped = match &self.opposites {
+            Some(opposites) => opposites.symmetrised(&draped),
+            None => draped,
+        };
         let is_refined = self.n_before > 0;
         if self.stand_in.is_none() {
             if !is_refined {
@@ -367,26 +440,18 @@ impl Draping {
             let (pair, truth) = (&self.pair, self.truth.as_ref());
             self.stages.time("figures", || pair.judge(&draped, truth))?
         };
-        let overlap = self.drape.overlap();
-        let attraction = match &self.stand_in {
-            Some(_) => &self.regions.attraction,
-            None => self.drape.attraction(),
-        };
-        let counted = Counted {
-            attraction,
-            mesh_exceeds: overlap.mesh_exceeds,
-            target_exceeds: overlap.target_exceeds,
-        };
+        let counterparts = self.counterparts();
         let explanation = {
             let pair = &self.pair;
             self.stages.time("explanation", || {
-                crate::explain::explain(pair, &draped, &report, &counted)
+                crate::explain::explain(pair, &draped, &report, &counterparts)
             })
         };
         Ok(Outcome {
             network: self.network(),
             pair: self.pair,
             preset: self.preset,
+            by_landmarks: self.by_landmarks,
             initial: self.initial,
             draped,
             report,

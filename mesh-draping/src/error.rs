@@ -8,7 +8,7 @@ use mesh_init::InitError;
 use mesh_metrics::EvaluateError;
 use neural_drape::{DrapeError, WarpError};
 
-use crate::landmarks::LandmarkError;
+use crate::landmarks::{LandmarkError, MirrorError};
 use crate::parts::PartError;
 use crate::preset::PresetError;
 
@@ -46,6 +46,9 @@ pub enum Error {
     /// A landmark file cannot be read, or does not belong to these shapes.
     #[error(transparent)]
     Landmarks(#[from] LandmarkError),
+    /// A source that shall come out symmetric is not.
+    #[error(transparent)]
+    NotSymmetric(#[from] MirrorError),
     /// A part of the source cannot be found, or nothing would be left to drape.
     #[error(transparent)]
     Parts(#[from] PartError),

@@ -2,8 +2,8 @@
 
 use std::fmt;
 
-use mesh_core::{measure, FaceId, Point3, Positions, TriangleBvh, VertexData, VertexId};
-use mesh_metrics::{percentiles, Report};
+use mesh_core::{measure, FaceId, Landmark, Point3, Positions, TriangleBvh, VertexData, VertexId};
+use mesh_metrics::{percentiles, Counterparts, Report};
 use serde::{Serialize, Serializer};
 
 use crate::landmarks::Label;
@@ -25,15 +25,6 @@ const FAR_BEYOND: f64 = 0.1;
 const N_PROBES: usize = 20_000;
 /// Regions are told one by one up to this many.
 const MAX_REGIONS: usize = 16;
-
-/// What the run knows about parts that were left out.
-pub(crate) struct Counted<'a> {
-    /// How strongly each vertex was attracted; 0 where it was left out.
-    pub(crate) attraction: &'a VertexData<f64>,
-    /// Whether the target ends where the source goes on, or the other way round.
-    pub(crate) mesh_exceeds: bool,
-    pub(crate) target_exceeds: bool,
-}
 
 /// Where a result is worst, how near it is, and what to try.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
@@ -219,9 +210,9 @@ pub(crate) fn explain(
     pair: &Pair,
     draped: &Positions,
     report: &Report,
-    counted: &Counted<'_>,
+    counterparts: &Counterparts,
 ) -> Explanation {
-    let case = Case::new(pair, draped, &report.vertex_distances, counted);
+    let case = Case::new(pair, draped, &report.vertex_distances, counterparts);
     let mut places = case.of_source();
     places.extend(case.of_target());
     places.sort_by(|a, b| b.distance.total_cmp(&a.distance));
@@ -238,7 +229,7 @@ struct Case<'a> {
     pair: &'a Pair,
     draped: &'a Positions,
     distances: &'a VertexData<f64>,
-    counted: &'a Counted<'a>,
+    counterparts: &'a Counterparts,
     /// Vertices that have a counterpart.
     counts: VertexData<bool>,
     /// Longest side of the target's box.
@@ -250,7 +241,7 @@ impl<'a> Case<'a> {
         pair: &'a Pair,
         draped: &'a Positions,
         distances: &'a VertexData<f64>,
-        counted: &'a Counted<'a>,
+        counterparts: &'a Counterparts,
     ) -> Self {
         let surface = pair.target.judged();
         let hits = surface.closest_points(draped.as_slice());
@@ -258,9 +249,8 @@ impl<'a> Case<'a> {
             .ids()
             .zip(&hits)
             .map(|(v, hit)| {
-                let is_beyond = counted.mesh_exceeds && surface.is_on_boundary(&hit.location);
                 let is_used = !pair.source.mesh().outgoing(v).is_empty();
-                is_used && counted.attraction[v] > 0.0 && !is_beyond
+                is_used && counterparts.has_vertex(v, hit, surface.as_ref())
             })
             .collect();
         Self {
@@ -268,7 +258,7 @@ impl<'a> Case<'a> {
             pair,
             draped,
             distances,
-            counted,
+            counterparts,
             counts,
         }
     }
@@ -294,7 +284,7 @@ impl<'a> Case<'a> {
 
     /// Places of the target that are far from the result.
     fn of_target(&self) -> Vec<WorstPlace> {
-        if self.counted.target_exceeds {
+        if self.counterparts.mesh_ends {
             return Vec::new();
         }
         let source = &self.pair.source;
@@ -350,7 +340,7 @@ impl<'a> Case<'a> {
 
     /// The landmark that gives a place its name.
     fn landmark_near(&self, point: &Point3) -> Option<(Label, f64)> {
-        let landmarks = &self.pair.landmarks;
+        let landmarks: Vec<&Landmark> = Landmark::marked(&self.pair.landmarks).collect();
         let far = landmarks.iter().enumerate();
         let far = far.map(|(k, l)| ((l.target - point).norm() / self.side, k));
         let (distance, k) = far.min_by(|a, b| a.0.total_cmp(&b.0))?;
@@ -416,7 +406,7 @@ impl<'a> Case<'a> {
     fn advice(&self, places: &[WorstPlace]) -> Vec<Advice> {
         let mut advice = Vec::new();
         let worst = places.first().map_or(0.0, |p| p.distance);
-        let is_partial = self.counted.target_exceeds || self.counted.mesh_exceeds;
+        let is_partial = self.counterparts.mesh_ends || self.counterparts.target_ends;
         if worst > FAR_BEYOND && !is_partial {
             advice.push(Advice::SayWhatIsPartial);
         }

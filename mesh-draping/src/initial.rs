@@ -8,12 +8,14 @@ use crate::{Error, Note, Pair};
 
 /// How the source is brought to its landmarks before it is draped.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
+#[serde(rename_all = "kebab-case")]
 pub enum InitialMethod {
     /// The best of several starts: that of [`Self::Standard`], and two that are led by distances along the surfaces
     /// ([`mesh_init::Guide`]). Each is tried on a coarse stand-in before the drape begins; to [`initial_deformation`],
     /// which drapes nothing, the same as [`Self::Standard`].
     Tried,
+    /// The same, but no network leads where all of them are poor: what it gives is measured against this.
+    TriedByVertices,
     /// Affine, then rotations and scales spread from the landmarks: least distortion ([`InitConfig::standard`]).
     Standard,
     /// The paper's: affine, then a biharmonic field ([`InitConfig::paper`]).
@@ -26,7 +28,7 @@ impl InitialMethod {
     /// How landmarks spread; none where the affine map is all.
     pub fn config(self) -> Option<InitConfig> {
         match self {
-            Self::Tried | Self::Standard => Some(InitConfig::standard()),
+            Self::Tried | Self::TriedByVertices | Self::Standard => Some(InitConfig::standard()),
             Self::Paper => Some(InitConfig::paper()),
             Self::Affine => None,
         }
@@ -51,7 +53,7 @@ pub struct InitialShape {
 /// Landmarks that do not fit the source, or a deformation that cannot be solved for.
 pub fn initial_deformation(pair: &Pair, method: InitialMethod) -> Result<InitialShape, Error> {
     let (source, landmarks) = (&pair.source, &pair.landmarks);
-    let pose = (landmarks.len() < ENOUGH_TO_STAND)
+    let pose = (pair.n_followed() < ENOUGH_TO_STAND)
         .then(|| search_pose(pair))
         .flatten();
     let placed = match &pose {
@@ -74,7 +76,7 @@ pub fn initial_deformation(pair: &Pair, method: InitialMethod) -> Result<Initial
             placed.map(|p| affine.apply(p))
         }
     };
-    let notes = pose.iter().flat_map(|p| assumed(p, landmarks.len()));
+    let notes = pose.iter().flat_map(|p| assumed(p, pair.n_followed()));
     Ok(InitialShape {
         notes: notes.collect(),
         positions,

@@ -21,6 +21,11 @@
 //! | treat parts in their own way | [`Parts`], [`parts`] |
 //! | drape | [`Transfer::run`] |
 //! | drape step by step, pause, change landmarks, resume | [`Transfer::start`], [`Draping`] |
+//! | relax, pull or slide a place of the result by hand | [`Stroke`], [`Draping::brush`] |
+//! | snap a place to a vertex, or to the most curved one | [`SnapPoints`] |
+//! | start from a shape that nearly fits | [`Transfer::with_start`] |
+//! | start from what shapes of a population have in common | [`Population`] |
+//! | get a result as symmetric as the source | [`Transfer::symmetric`] |
 //! | drape on a thread of its own | [`Draping::spawn`], [`Background`] |
 //! | use the result | [`Outcome`] |
 //! | deform by landmarks only | [`initial_deformation`] |
@@ -30,6 +35,7 @@
 //! left out or repaired comes back as values: [`Note`], [`landmarks::Finding`], [`Explanation`].
 
 mod background;
+mod brush;
 mod draping;
 mod ending;
 mod error;
@@ -42,17 +48,21 @@ mod outcome;
 mod pair;
 pub mod parts;
 mod plain;
+mod population;
 pub mod preset;
 mod seams;
 mod similarity;
+mod snap;
 mod source;
 mod stages;
 mod stand_in;
 mod start;
+mod symmetric;
 mod target;
 mod transfer;
 
 pub use background::{Background, BackgroundStatus};
+pub use brush::{Brush, BrushInput, Moves, Stroke};
 pub use draping::{adjusted, Draping};
 pub use error::{Error, MeshProblem};
 pub use explain::{Advice, CrossingPlace, Explanation, PlaceKind, RegionDistances, WorstPlace};
@@ -63,9 +73,11 @@ pub use outcome::Outcome;
 pub use pair::Pair;
 pub use parts::{Parts, Treatment};
 pub use plain::plain_words;
+pub use population::Population;
 pub use preset::Preset;
 pub use seams::{Seams, SeamsError};
 pub use similarity::Similarity;
+pub use snap::{SnapPoints, SNAP_REACH};
 pub use source::{GatheredPositions, Source};
 pub use stages::{Stages, DRAPING, REFINING};
 pub use target::Target;

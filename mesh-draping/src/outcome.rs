@@ -3,11 +3,11 @@
 use std::path::Path;
 
 use mesh_core::{Positions, UnitFrame, VertexData};
-use mesh_metrics::Report;
+use mesh_metrics::{Counterparts, Report};
 use neural_drape::network::NetworkMap;
 use neural_drape::Warp;
 
-use crate::explain::{explain, Counted};
+use crate::explain::explain;
 use crate::{Error, Explanation, History, Note, Pair, Preset, Stages};
 
 /// A draped source with its report.
@@ -16,7 +16,9 @@ pub struct Outcome {
     pub pair: Pair,
     /// The settings.
     pub preset: Preset,
-    /// Where the drape started, in the target's coordinates; one position per vertex of the source.
+    /// The source brought to its landmarks, in the target's coordinates; one position per vertex of the source.
+    pub by_landmarks: Positions,
+    /// Where the drape started, likewise: there, or in the best of several starts.
     pub initial: Positions,
     /// The result, likewise.
     pub draped: Positions,
@@ -46,15 +48,12 @@ impl Outcome {
         draped: Positions,
     ) -> Result<Self, Error> {
         let report = pair.judge(&draped, None)?;
-        let counted = Counted {
-            attraction: &VertexData::new(draped.len(), 1.0),
-            mesh_exceeds: false,
-            target_exceeds: false,
-        };
+        let counterparts = Counterparts::all(draped.len());
         Ok(Self {
-            explanation: explain(&pair, &draped, &report, &counted),
+            explanation: explain(&pair, &draped, &report, &counterparts),
             pair,
             preset,
+            by_landmarks: initial.clone(),
             initial,
             draped,
             report,

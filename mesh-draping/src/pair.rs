@@ -46,6 +46,11 @@ impl Pair {
         examine(self)
     }
 
+    /// How many landmarks count: those of curves too, those of weight 0 not.
+    pub(crate) fn n_followed(&self) -> usize {
+        self.landmarks.iter().filter(|l| l.is_followed()).count()
+    }
+
     /// What was found in the files of both shapes, and what was left out of the target.
     pub fn notes(&self) -> Vec<Note> {
         let mut notes = self.source.notes();
@@ -93,11 +98,27 @@ impl Pair {
         truth: Option<&Positions>,
     ) -> Result<(), DrapeError> {
         let expected = self.source.rest().len();
-        let lengths = [
+        self.check_each([
             ("the attraction of the regions", regions.attraction.len()),
             ("the rigid regions", regions.rigid.len()),
             ("the truth", truth.map_or(expected, Positions::len)),
-        ];
+        ])
+    }
+
+    /// Whether a shape to start from has a position for each vertex of the source.
+    pub(crate) fn check_start(&self, start: Option<&Positions>) -> Result<(), DrapeError> {
+        let expected = self.source.rest().len();
+        self.check_each([(
+            "the shape to start from",
+            start.map_or(expected, Positions::len),
+        )])
+    }
+
+    fn check_each<const N: usize>(
+        &self,
+        lengths: [(&'static str, usize); N],
+    ) -> Result<(), DrapeError> {
+        let expected = self.source.rest().len();
         match lengths.into_iter().find(|(_, found)| *found != expected) {
             Some((what, found)) => Err(DrapeError::LengthMismatch {
                 what,

@@ -85,7 +85,8 @@ impl Preset {
         PRESETS.iter().map(|(name, _)| *name)
     }
 
-    /// The paper's studies, which change one thing each: presets, too ([`DrapeConfig::studies`], and another start).
+    /// The paper's studies, which change one thing each, and the default without the network that leads: presets, too
+    /// ([`DrapeConfig::studies`], and another start).
     pub fn studies() -> Vec<Self> {
         let studies = DrapeConfig::studies().into_iter();
         let mut presets: Vec<Self> = studies
@@ -99,7 +100,21 @@ impl Preset {
             initial,
             ..Self::of_drape(name, DrapeConfig::study())
         }));
+        presets.push(Self::by_vertices("study-vertices", 1.0));
+        presets.push(Self::by_vertices("study-vertices-longer", 1.5));
         presets
+    }
+
+    /// The default without the network that leads, with `times` the iterations.
+    fn by_vertices(name: &str, times: f64) -> Self {
+        let mut drape = DrapeConfig::standard();
+        for stage in &mut drape.stages {
+            stage.n_iterations = (stage.n_iterations as f64 * times) as usize;
+        }
+        Self {
+            initial: InitialMethod::TriedByVertices,
+            ..Self::of_drape(name, drape)
+        }
     }
 
     /// The preset or study of this name.
@@ -141,6 +156,21 @@ impl Preset {
         let text = fs::read_to_string(path).map_err(|e| of_file(PresetProblem::Io(e)))?;
         let table = parse(&text).map_err(of_file)?;
         over(table, preset).map_err(of_file)
+    }
+
+    /// These settings, and the text of a TOML file over them, as in [`Self::from_toml`].
+    ///
+    /// ```
+    /// use mesh_draping::Preset;
+    /// let preset = Preset::quick().with_toml("[sampling]\nn_samples = 500\n")?;
+    /// assert_eq!((preset.name.as_str(), preset.drape.sampling.n_samples), ("quick", 500));
+    /// # Ok::<(), mesh_draping::preset::PresetError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`Self::from_toml`].
+    pub fn with_toml(self, text: &str) -> Result<Self, PresetError> {
+        Ok(over_preset(parse(text)?, self)?)
     }
 
     /// The settings as a TOML text that [`Self::from_toml`] reads back.
@@ -222,12 +252,17 @@ fn parse(text: &str) -> Result<Table, PresetProblem> {
 /// default.
 fn over(mut overrides: Table, preset: Option<&str>) -> Result<Preset, PresetProblem> {
     let named: Option<String> = take(&mut overrides, "preset")?;
-    let initial: Option<InitialMethod> = take(&mut overrides, "initial")?;
     let name = preset.map(str::to_owned).or(named);
     let preset = match name {
         Some(name) => Preset::named(&name).map_err(|error| error.problem)?,
         None => Preset::standard(),
     };
+    over_preset(overrides, preset)
+}
+
+/// The settings of `overrides` over these.
+fn over_preset(mut overrides: Table, preset: Preset) -> Result<Preset, PresetProblem> {
+    let initial: Option<InitialMethod> = take(&mut overrides, "initial")?;
     let setting =
         |error: &dyn std::fmt::Display| PresetProblem::Setting(plain_words(&error.to_string()));
     let mut merged = Value::try_from(&preset.drape).map_err(|error| setting(&error))?;

@@ -86,13 +86,7 @@ mod tests {
 
     fn pairs(map: impl Fn(&Point3) -> Point3) -> Vec<PointPair> {
         let prism = mesh_core::shapes::prism(5).positions;
-        prism
-            .iter()
-            .map(|p| PointPair {
-                source: *p,
-                target: map(p),
-            })
-            .collect()
+        prism.iter().map(|p| PointPair::new(*p, map(p))).collect()
     }
 
     #[test]

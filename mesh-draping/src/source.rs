@@ -6,11 +6,12 @@ use std::sync::{Arc, OnceLock};
 use mesh_core::bvh::closest_point_on_triangle;
 use mesh_core::io::{self, MeshFile, Morphs, WriteError};
 use mesh_core::{
-    Aabb, FaceId, HalfedgeMesh, Location, MeshPoint, Point3, PolygonSoup, Positions, TriangleBvh,
-    Triangulation, VertexId, Weld,
+    map_gradients, Aabb, FaceId, HalfedgeMesh, Location, MeshPoint, Point3, PolygonSoup, Positions,
+    TriangleBvh, Triangulation, Vector3, VertexId, Weld,
 };
 
 use crate::error::{check_copies, check_extent, in_file, MeshProblem};
+use crate::parts::PartProblem;
 use crate::{Error, Note, Seams, Shape};
 
 /// A mesh to deform: connectivity, rest positions, its polygons as triangles, and its file, to write it back.
@@ -26,6 +27,8 @@ pub struct Source {
     /// The first row of the file for each vertex.
     rows: Arc<Vec<u32>>,
     bvh: Arc<OnceLock<TriangleBvh>>,
+    /// Parts that were named in memory.
+    parts: Arc<Vec<(String, Vec<VertexId>)>>,
 }
 
 /// Positions read for a source, one per vertex.
@@ -108,7 +111,28 @@ impl Source {
             weld: Arc::new(weld),
             rows: Arc::new(rows),
             bvh: Arc::default(),
+            parts: Arc::default(),
         })
+    }
+
+    /// The same source with a part named `name`, that [`Parts`](crate::Parts) find as they find the groups of a file:
+    /// the vertices of these rows.
+    ///
+    /// # Errors
+    /// A row that the source does not have.
+    pub fn with_part(mut self, name: &str, rows: &[usize]) -> Result<Self, PartProblem> {
+        let n = self.n_file_vertices();
+        let vertex = |&row: &usize| self.vertex_at(row).ok_or(PartProblem::NoVertex { row, n });
+        let vertices = rows.iter().map(vertex).collect::<Result<_, _>>()?;
+        Arc::make_mut(&mut self.parts).push((name.to_owned(), vertices));
+        Ok(self)
+    }
+
+    /// The vertices of a part that was named in memory.
+    pub(crate) fn part(&self, name: &str) -> Option<&[VertexId]> {
+        let mut parts = self.parts.iter();
+        let found = parts.find(|(known, _)| known == name);
+        found.map(|(_, vertices)| vertices.as_slice())
     }
 
     /// The same source; its morph targets are treated as `morphs` says when it is written.
@@ -265,6 +289,28 @@ impl Source {
         }
     }
 
+    /// Displacements from the rest shape, one per vertex of the file, taken to `draped`: `δ' = J δ` with the gradient J of
+    /// the map from rest to `draped` around each vertex ([`map_gradients`]), as morph targets of a glTF file are carried.
+    ///
+    /// # Panics
+    /// If there is not one displacement per vertex of the file.
+    pub fn carry(&self, draped: &Positions, displacements: &[Vector3]) -> Vec<Vector3> {
+        assert_eq!(displacements.len(), self.n_file_vertices());
+        let maps = map_gradients(&self.soup(), self.spread(draped).as_slice());
+        let carried = displacements.iter().zip(maps);
+        carried
+            .map(|(d, map)| map.map_or(*d, |map| map * d))
+            .collect()
+    }
+
+    /// All polygons at rest, with the vertices of the file.
+    pub fn soup(&self) -> PolygonSoup {
+        match self.file() {
+            Some(file) => file.soup().clone(),
+            None => self.moved_soup(self.spread(&self.rest)),
+        }
+    }
+
     /// The faces of the file with its vertices at `positions`, one per vertex of the file.
     fn moved_soup(&self, positions: Positions) -> PolygonSoup {
         let file_vertex = |v: &VertexId| self.rows[v.index()];
@@ -301,6 +347,38 @@ mod tests {
             faces: vec![vec![0, 1]],
         };
         assert!(Source::of_soup(soup, Seams::EXACT).is_err());
+    }
+
+    #[test]
+    fn displacements_turn_and_grow_with_the_surface_around_them() {
+        let source = Source::of_soup(shapes::quad_sphere(4), Seams::EXACT).unwrap();
+        let turned = |p: Vector3| Vector3::new(-2.0 * p.y, 2.0 * p.x, 2.0 * p.z);
+        let draped = source.rest().map(|p| Point3::from(turned(p.coords)));
+        let given: Vec<Vector3> = source.rest().iter().map(|p| p.coords * 0.1).collect();
+        for (d, carried) in given.iter().zip(source.carry(&draped, &given)) {
+            let off = (turned(*d) - carried).norm();
+            assert!(off < 1e-9, "{off}: {d:?} {carried:?}");
+        }
+    }
+
+    #[test]
+    fn a_part_named_in_memory_is_found_like_a_group() {
+        let soup = shapes::open_grid(2, 2);
+        let source = Source::of_soup(soup.clone(), Seams::EXACT).unwrap();
+        let named = source.clone().with_part("rim", &[0, 1, 2]).unwrap();
+        assert!(source.with_part("rim", &[9]).is_err());
+        let pair = crate::Pair {
+            source: named,
+            target: crate::Target::of_soup(soup).unwrap(),
+            landmarks: Vec::new(),
+        };
+        let parts = crate::Parts {
+            free: vec!["rim".to_owned()],
+            ..crate::Parts::default()
+        };
+        let attraction = parts.resolve(&pair).unwrap().regions.attraction;
+        let free = attraction.ids().filter(|&v| attraction[v] == 0.0);
+        assert_eq!(free.map(|v| v.index()).collect::<Vec<_>>(), [0, 1, 2]);
     }
 
     #[test]

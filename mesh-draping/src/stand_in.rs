@@ -1,6 +1,6 @@
 //! Dense sources: a coarse stand-in is deformed and draped first, and carries the source.
 
-use mesh_core::{Landmark, MeshPoint, Positions, Proxy, VertexData, VertexId, Weld};
+use mesh_core::{Landmark, MeshPoint, Positions, Proxy, Vector3, VertexData, VertexId, Weld};
 use neural_drape::{ParametrizationConfig, Regions};
 
 use crate::{Error, InitialMethod, Pair, Preset, Source};
@@ -31,7 +31,7 @@ impl StandIn {
             && moves_vertices
             && matches!(
                 preset.initial,
-                InitialMethod::Tried | InitialMethod::Standard
+                InitialMethod::Tried | InitialMethod::TriedByVertices | InitialMethod::Standard
             )
     }
 
@@ -43,7 +43,7 @@ impl StandIn {
     /// A stand-in of about `n` vertices; of all of them where the source has no more.
     pub(crate) fn with_vertices(pair: &Pair, n: usize) -> Result<Self, Error> {
         let source = &pair.source;
-        let marked = pair.landmarks.iter().flat_map(|l| l.source.vertices);
+        let marked = Landmark::marked(&pair.landmarks).flat_map(|l| l.source.vertices);
         let marked: Vec<VertexId> = marked.collect();
         let proxy = Proxy::new(source.triangulation(), source.rest(), n, &marked);
         let rows = 0..proxy.vertices().len() as u32;
@@ -70,7 +70,7 @@ impl StandIn {
     }
 
     /// Landmarks of the source on the stand-in. Their vertices are kept as long as the stand-in was made for them; of
-    /// others the nearest that is left is taken.
+    /// others, and along curves, the nearest place that is left is taken.
     pub(crate) fn landmarks(&self, landmarks: &[Landmark]) -> Vec<Landmark> {
         let landmark = |l: &Landmark| Landmark {
             source: self.place(&l.source),
@@ -111,8 +111,22 @@ impl StandIn {
         self.proxy.vertices().iter().map(|&v| x[v]).collect()
     }
 
+    /// The moves of the vertices of the stand-in among those of the source.
+    pub(crate) fn moves(&self, moves: &VertexData<Vector3>) -> VertexData<Vector3> {
+        self.proxy.vertices().iter().map(|&v| moves[v]).collect()
+    }
+
     /// The source as the stand-in at `x` carries it.
     pub(crate) fn carry(&self, x: &Positions) -> Positions {
         self.proxy.carry(&self.rest, x)
+    }
+
+    /// The same of two shapes, which may be one.
+    pub(crate) fn carry_both(&self, a: Positions, b: Positions) -> (Positions, Positions) {
+        let carried = self.carry(&a);
+        match a == b {
+            true => (carried.clone(), carried),
+            false => (carried, self.carry(&b)),
+        }
     }
 }

@@ -24,6 +24,8 @@ pub struct Transfer {
     regions: Option<Regions>,
     truth: Option<Positions>,
     stages: Stages,
+    start: Option<Positions>,
+    is_symmetric: bool,
     is_stand_in_allowed: bool,
 }
 
@@ -47,6 +49,8 @@ impl Transfer {
             regions: None,
             truth: None,
             stages: Stages::off(),
+            start: None,
+            is_symmetric: false,
             is_stand_in_allowed: true,
         }
     }
@@ -81,6 +85,30 @@ impl Transfer {
         Self { stages, ..self }
     }
 
+    /// The drape starts from a shape of the source that nearly fits, in the target's coordinates: the result of the frame
+    /// before. Landmarks, where there are any, deform it as they deform a drape in progress ([`Draping::set_landmarks`]). No
+    /// start is searched, and the run is the end of a whole one: as many iterations as a changed drape gets
+    /// ([`Draping::n_more`]), at its last weights and finest steps.
+    #[must_use]
+    pub fn with_start(self, shape: Positions) -> Self {
+        Self {
+            start: Some(shape),
+            is_stand_in_allowed: false,
+            ..self
+        }
+    }
+
+    /// The result is as symmetric as the source: at the end, each vertex goes to the middle between itself and the mirror
+    /// image of its opposite, across the plane that lies between them. Where the target is not symmetric, the result
+    /// leaves it by as much.
+    #[must_use]
+    pub fn symmetric(self) -> Self {
+        Self {
+            is_symmetric: true,
+            ..self
+        }
+    }
+
     /// A dense source is draped itself, without a coarse stand-in.
     #[must_use]
     pub fn without_stand_in(self) -> Self {
@@ -93,7 +121,7 @@ impl Transfer {
     /// Finds the initial deformation and sets the drape up, to be stepped.
     ///
     /// # Errors
-    /// Landmarks or parts that do not fit the source, a setting out of range, a deformation that cannot be solved for.
+    /// Landmarks, parts or a start that do not fit the source, a source that shall come out symmetric and is not, a setting out of range, a deformation that cannot be solved for.
     pub fn start(self) -> Result<Draping, Error> {
         let (regions, notes) = match self.regions {
             Some(regions) => (regions, Vec::new()),
@@ -108,6 +136,8 @@ impl Transfer {
             notes,
             truth: self.truth,
             stages: self.stages,
+            start: self.start,
+            is_symmetric: self.is_symmetric,
             is_stand_in_allowed: self.is_stand_in_allowed,
         };
         Draping::start(self.pair, beginning)

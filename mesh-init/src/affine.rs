@@ -17,6 +17,19 @@ pub struct PointPair {
     pub source: Point3,
     /// In the target's coordinates.
     pub target: Point3,
+    /// What it counts, in pairs, > 0.
+    pub weight: f64,
+}
+
+impl PointPair {
+    /// A pair that counts as one.
+    pub fn new(source: Point3, target: Point3) -> Self {
+        Self {
+            source,
+            target,
+            weight: 1.0,
+        }
+    }
 }
 
 /// What lengths are measured in, and what is laid over each other where pairs are too few.
@@ -84,7 +97,7 @@ impl AffineFit {
 
 /// Least-squares affine map from `source` to `target` of every pair, or as much of one as the pairs determine.
 ///
-/// `A = (B + μ S)(C + μ I)⁻¹` with `C = Σ c cᵀ`, `B = Σ d cᵀ` over the centred pairs and `S` the best similarity
+/// `A = (B + μ S)(C + μ I)⁻¹` with `C = Σ w c cᵀ`, `B = Σ w d cᵀ` over the centred pairs and `S` the best similarity
 /// (Umeyama 1991), which never mirrors. `μ` is given by `prior`. In boxes of longest side 1, so units do not
 /// matter. Fewer or degenerate pairs: see [`AffineKind`]. Source: Mesh Draping, Correspondence Setup. Departures: the
 /// prior, and maps for fewer than four landmarks.
@@ -126,7 +139,12 @@ pub(crate) fn least_squares(
         weight,
     } in pairs
     {
-        moments = moments.plus(&UnitPair { source, target }, weight);
+        let pair = UnitPair {
+            source,
+            target,
+            weight,
+        };
+        moments = moments.plus(&pair, 1.0);
         total += weight;
     }
     // The prior is a length: it counts against the mean of the pairs, whatever their number.
@@ -135,7 +153,12 @@ pub(crate) fn least_squares(
 }
 
 fn best_prior(unit: &[UnitPair]) -> f64 {
-    let errors = PRIORS.map(|mu| left_out_errors(unit, mu).map(|e| e * e).sum::<f64>().sqrt());
+    let squared = |mu: f64| {
+        left_out_errors(unit, mu)
+            .zip(unit)
+            .map(|(e, p)| e * e * p.weight)
+    };
+    let errors = PRIORS.map(|mu| squared(mu).sum::<f64>().sqrt());
     let least = errors.iter().copied().fold(f64::INFINITY, f64::min);
     let strongest = PRIORS
         .iter()
@@ -157,6 +180,7 @@ fn left_out_errors(unit: &[UnitPair], mu: f64) -> impl Iterator<Item = f64> + '_
 struct UnitPair {
     source: Vector3,
     target: Vector3,
+    weight: f64,
 }
 
 struct Frames {
@@ -181,6 +205,7 @@ impl Frames {
         let unit = |p: &PointPair| UnitPair {
             source: (p.source.coords - self.source_center) / self.source_scale,
             target: (p.target.coords - self.target_center) / self.target_scale,
+            weight: p.weight,
         };
         pairs.iter().map(unit).collect()
     }
@@ -221,14 +246,14 @@ impl Moments {
     }
 
     fn plus(self, pair: &UnitPair, sign: f64) -> Self {
-        let (p, q) = (pair.source, pair.target);
+        let (p, q, counted) = (pair.source, pair.target, pair.weight * sign);
         Self {
-            n: self.n + sign,
-            source: self.source + p * sign,
-            target: self.target + q * sign,
-            source_source: self.source_source + p * p.transpose() * sign,
-            target_source: self.target_source + q * p.transpose() * sign,
-            target_target: self.target_target + q.norm_squared() * sign,
+            n: self.n + counted,
+            source: self.source + p * counted,
+            target: self.target + q * counted,
+            source_source: self.source_source + p * p.transpose() * counted,
+            target_source: self.target_source + q * p.transpose() * counted,
+            target_target: self.target_target + q.norm_squared() * counted,
         }
     }
 }
@@ -242,7 +267,7 @@ struct UnitMap {
 
 impl UnitMap {
     fn fit(moments: &Moments, mu: f64) -> Self {
-        if moments.n < 0.5 {
+        if moments.n <= 0.0 {
             return Self {
                 linear: Matrix3::identity(),
                 translation: Vector3::zeros(),

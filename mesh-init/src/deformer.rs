@@ -1,10 +1,15 @@
 //! The deformation of a placed shape by what pulls at its vertices, kept ready for other goals.
 
-use mesh_core::{LandmarkKind, Point3, Positions, Triangulation, UnitFrame, Vector3, VertexId};
+use mesh_core::{
+    Landmark, LandmarkKind, Point3, Positions, Triangulation, UnitFrame, Vector3, VertexId,
+};
 use mesh_operators::{geodesic_distance_unfolded, SolveError, SpaceExtension};
 
 use crate::reach::is_reached;
-use crate::{ArapSolver, BiharmonicSolver, InitConfig, InitError, Pinning, SimilarSolver, Spread};
+use crate::{
+    ArapSolver, BiharmonicSolver, InitConfig, InitError, Pinning, PulledVertex, SimilarSolver,
+    Spread,
+};
 
 /// Rigid landmarks move what lies within this geodesic distance, in longest sides of the box (the authors' program).
 const RIGID_REACH: f64 = 0.25;
@@ -19,6 +24,43 @@ pub(crate) struct Pull {
     /// From the place of the landmark to the vertex, in the placed shape.
     pub(crate) offset: Vector3,
     pub(crate) kind: LandmarkKind,
+    pub(crate) strength: Strength,
+}
+
+/// How strongly a landmark or a handle is followed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Strength {
+    /// What it counts where landmarks are weighed against each other and the surface.
+    pub(crate) pull: f64,
+    /// The share of the way to its place that it is brought where it is held; 1 and more are all of it.
+    pub(crate) hold: f64,
+}
+
+impl Strength {
+    pub(crate) fn of(landmark: &Landmark) -> Self {
+        Self {
+            pull: landmark.pull(),
+            hold: landmark.weight,
+        }
+    }
+
+    /// Of a handle at which another landmark pulls, too: together they pull no more than the stronger, or than one of
+    /// weight 1.
+    fn with(self, other: Self) -> Self {
+        let most = self.pull.max(other.pull).max(1.0);
+        Self {
+            pull: (self.pull + other.pull).min(most),
+            hold: self.hold.max(other.hold),
+        }
+    }
+}
+
+/// A vertex at which landmarks pull.
+#[derive(Clone, Copy, Debug)]
+struct Handle {
+    vertex: VertexId,
+    kind: LandmarkKind,
+    strength: Strength,
 }
 
 /// A shape with all that a deformation of it needs but the goals: its systems are factored.
@@ -31,7 +73,7 @@ pub(crate) struct Deformer {
     pulls: Vec<Pull>,
     /// The handle of each pull, and those of each kind.
     handle_of: Vec<usize>,
-    handles: Vec<(VertexId, LandmarkKind)>,
+    handles: Vec<Handle>,
     all: Option<Field>,
     rigid: Option<Rigid>,
     /// Vertices with a handle on their piece, and those without.
@@ -52,19 +94,19 @@ impl Deformer {
     ) -> Result<Self, InitError> {
         let frame = UnitFrame::principal(placed.as_slice());
         let start = placed.map(|p| frame.to_unit(p));
-        let mut handles: Vec<(VertexId, LandmarkKind)> = Vec::new();
+        let mut handles: Vec<Handle> = Vec::new();
         let mut handle_of = Vec::with_capacity(pulls.len());
         for pull in &pulls {
-            let known = handles.iter().position(|(v, _)| *v == pull.vertex);
+            let known = handles.iter().position(|h| h.vertex == pull.vertex);
             let row = known.unwrap_or(handles.len());
-            if known.is_none() {
-                handles.push((pull.vertex, pull.kind));
-            } else if pull.kind == LandmarkKind::Rigid {
-                handles[row].1 = LandmarkKind::Rigid;
+            if known.is_some() {
+                handles[row].add(pull);
+            } else {
+                handles.push(Handle::of(pull));
             }
             handle_of.push(row);
         }
-        let rows: Vec<VertexId> = handles.iter().map(|&(v, _)| v).collect();
+        let rows: Vec<VertexId> = handles.iter().map(|h| h.vertex).collect();
         let is_guided = is_reached(&triangulation, &rows);
         let (guided, extrapolated) = start.ids().partition(|&v| is_guided[v]);
         let (mut all, mut rigid) = (None, None);
@@ -73,7 +115,7 @@ impl Deformer {
                 triangulation: &triangulation,
                 start: &start,
             };
-            all = Some(Field::new(&shape, &rows, config)?);
+            all = Some(Field::new(&shape, &handles, config)?);
             rigid = Rigid::new(&shape, &handles, config)?;
         }
         Ok(Self {
@@ -131,7 +173,8 @@ impl Deformer {
         pulls.map(|(pull, goal)| goal - x[pull.vertex]).collect()
     }
 
-    /// Where each handle belongs: the target of its landmark, moved by the offset; the mean where there are several.
+    /// Where each handle belongs: the target of its landmark, moved by the offset; the mean where there are several, by what
+    /// they count.
     fn goals(&self, targets: &[Point3]) -> Goals {
         assert_eq!(
             targets.len(),
@@ -142,12 +185,13 @@ impl Deformer {
         let pulls = self.pulls.iter().zip(targets).zip(&self.handle_of);
         for ((pull, target), &handle) in pulls {
             let goal = self.frame.to_unit(&(target + pull.offset));
-            let (mean, n) = &mut goals[handle];
-            *n += 1.0;
-            if *n == 1.0 {
+            let (mean, total) = &mut goals[handle];
+            let is_first = *total == 0.0;
+            *total += pull.strength.pull;
+            if is_first {
                 *mean = goal;
             } else {
-                *mean += (goal - *mean) / *n;
+                *mean += (goal - *mean) * pull.strength.pull / *total;
             }
         }
         goals.into_iter().map(|(mean, _)| mean).collect()
@@ -186,34 +230,45 @@ impl Shape<'_> {
 /// The smooth deformation of the pieces with a handle; the others stay.
 #[derive(Clone, Debug)]
 struct Field {
-    handles: Vec<VertexId>,
+    handles: Vec<Handle>,
     n_pinned: usize,
     biharmonic: BiharmonicSolver,
+    /// What handles of weights below 1 are brought from.
+    strong: Strong,
     similar: Option<SimilarSolver>,
 }
 
+/// The field of the handles that are brought to their places all the way.
+#[derive(Clone, Debug)]
+enum Strong {
+    /// All are.
+    All,
+    /// None is: nothing moves.
+    None,
+    /// Those of these rows.
+    Some(Vec<usize>, Box<BiharmonicSolver>),
+}
+
 impl Field {
-    fn new(
-        shape: &Shape<'_>,
-        handles: &[VertexId],
-        config: &InitConfig,
-    ) -> Result<Self, SolveError> {
+    fn new(shape: &Shape<'_>, handles: &[Handle], config: &InitConfig) -> Result<Self, SolveError> {
+        let vertices: Vec<VertexId> = handles.iter().map(|h| h.vertex).collect();
         let pinned = match config.pinning {
             Pinning::None => Vec::new(),
-            Pinning::Beyond(reach) => shape.farther_than(reach, handles),
+            Pinning::Beyond(reach) => shape.farther_than(reach, &vertices),
         };
         let similar = match config.spread {
             Spread::Biharmonic => None,
             Spread::Similar(config) => Some(SimilarSolver::new(
                 shape.triangulation,
                 shape.start,
-                handles,
+                &handles.iter().map(Handle::pulled).collect::<Vec<_>>(),
                 config,
             )?),
         };
-        let held = [handles, &pinned].concat();
+        let held = [vertices, pinned.clone()].concat();
         Ok(Self {
             biharmonic: BiharmonicSolver::new(shape.triangulation, shape.start, &held)?,
+            strong: Strong::new(shape, handles, &pinned)?,
             handles: handles.to_vec(),
             n_pinned: pinned.len(),
             similar,
@@ -222,13 +277,79 @@ impl Field {
 
     fn solve(&self, shape: &Shape<'_>, goals: &[Point3]) -> Positions {
         let moves = self.handles.iter().zip(goals);
-        let mut moves: Vec<Vector3> = moves.map(|(&v, goal)| goal - shape.start[v]).collect();
+        let mut moves: Vec<Vector3> = moves
+            .map(|(h, goal)| goal - shape.start[h.vertex])
+            .collect();
+        self.strong.weaken(&mut moves, &self.handles, self.n_pinned);
         moves.resize(goals.len() + self.n_pinned, Vector3::zeros());
         let d = self.biharmonic.solve(&moves);
         let biharmonic = shape.start.iter().zip(&d).map(|(p, d)| p + d).collect();
         match &self.similar {
             None => biharmonic,
             Some(similar) => similar.solve(goals, &biharmonic),
+        }
+    }
+}
+
+impl Strong {
+    fn new(shape: &Shape<'_>, handles: &[Handle], pinned: &[VertexId]) -> Result<Self, SolveError> {
+        let rows = (0..handles.len()).filter(|&h| handles[h].strength.hold >= 1.0);
+        let rows: Vec<usize> = rows.collect();
+        if rows.len() == handles.len() {
+            return Ok(Self::All);
+        }
+        if rows.is_empty() {
+            return Ok(Self::None);
+        }
+        let held = rows.iter().map(|&h| handles[h].vertex);
+        let held: Vec<VertexId> = held.chain(pinned.iter().copied()).collect();
+        let field = BiharmonicSolver::new(shape.triangulation, shape.start, &held)?;
+        Ok(Self::Some(rows, Box::new(field)))
+    }
+
+    /// Takes back, from the moves of handles with weights below 1, the share of what the others leave that they do not go.
+    fn weaken(&self, moves: &mut [Vector3], handles: &[Handle], n_pinned: usize) {
+        let without = match self {
+            Self::All => return,
+            Self::None => None,
+            Self::Some(rows, field) => {
+                let mut strong: Vec<Vector3> = rows.iter().map(|&h| moves[h]).collect();
+                strong.resize(rows.len() + n_pinned, Vector3::zeros());
+                Some(field.solve(&strong))
+            }
+        };
+        for (handle, way) in handles.iter().zip(moves) {
+            let from = without
+                .as_ref()
+                .map_or(Vector3::zeros(), |d| d[handle.vertex]);
+            if handle.strength.hold < 1.0 {
+                *way = from + (*way - from) * handle.strength.hold;
+            }
+        }
+    }
+}
+
+impl Handle {
+    fn of(pull: &Pull) -> Self {
+        Self {
+            vertex: pull.vertex,
+            kind: pull.kind,
+            strength: pull.strength,
+        }
+    }
+
+    /// Lets another landmark pull at the same vertex.
+    fn add(&mut self, pull: &Pull) {
+        if pull.kind == LandmarkKind::Rigid {
+            self.kind = LandmarkKind::Rigid;
+        }
+        self.strength = self.strength.with(pull.strength);
+    }
+
+    fn pulled(&self) -> PulledVertex {
+        PulledVertex {
+            vertex: self.vertex,
+            weight: self.strength.pull,
         }
     }
 }
@@ -250,24 +371,25 @@ impl Rigid {
     /// None where no handle is rigid.
     fn new(
         shape: &Shape<'_>,
-        handles: &[(VertexId, LandmarkKind)],
+        handles: &[Handle],
         config: &InitConfig,
     ) -> Result<Option<Self>, SolveError> {
         let (rigid, soft): (Vec<usize>, Vec<usize>) =
-            (0..handles.len()).partition(|&h| handles[h].1 == LandmarkKind::Rigid);
+            (0..handles.len()).partition(|&h| handles[h].kind == LandmarkKind::Rigid);
         if rigid.is_empty() {
             return Ok(None);
         }
-        let vertices = |rows: &[usize]| rows.iter().map(|&h| handles[h].0).collect::<Vec<_>>();
+        let vertices = |rows: &[usize]| rows.iter().map(|&h| handles[h].vertex).collect::<Vec<_>>();
         let mut far = shape.farther_than(RIGID_REACH, &vertices(&rigid));
-        far.retain(|v| handles.iter().all(|(held, _)| held != v));
+        far.retain(|v| handles.iter().all(|h| h.vertex != *v));
         let order = [&rigid[..], &soft].concat();
         let (mut field, mut solver) = (None, None);
         if soft.is_empty() {
             let held = [vertices(&order), far.clone()].concat();
             solver = Some(ArapSolver::new(shape.triangulation, shape.start, &held)?);
         } else {
-            field = Some(Field::new(shape, &vertices(&soft), config)?);
+            let soft: Vec<Handle> = soft.iter().map(|&h| handles[h]).collect();
+            field = Some(Field::new(shape, &soft, config)?);
         }
         Ok(Some(Self {
             soft,
@@ -281,7 +403,7 @@ impl Rigid {
     fn turn(
         &self,
         shape: &Shape<'_>,
-        handles: &[(VertexId, LandmarkKind)],
+        handles: &[Handle],
         goals: &[Point3],
         guess: &Positions,
     ) -> Result<Positions, SolveError> {
@@ -294,7 +416,7 @@ impl Rigid {
         let soft: Vec<Point3> = self.soft.iter().map(|&h| goals[h]).collect();
         let base = field.solve(shape, &soft);
         targets.extend(self.far.iter().map(|&v| base[v]));
-        let held = self.order.iter().map(|&h| handles[h].0);
+        let held = self.order.iter().map(|&h| handles[h].vertex);
         let held: Vec<VertexId> = held.chain(self.far.iter().copied()).collect();
         Ok(ArapSolver::new(shape.triangulation, &base, &held)?.solve(&targets, guess))
     }

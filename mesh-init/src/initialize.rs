@@ -3,7 +3,7 @@
 use mesh_core::{Landmark, Point3, Positions, Triangulation, UnitFrame};
 
 use crate::affine::{fit_affine, AffineFit, FramePair, PointPair};
-use crate::deformer::{Deformer, Pull};
+use crate::deformer::{Deformer, Pull, Strength};
 use crate::{InitConfig, InitError};
 
 /// What an initial deformation is found from.
@@ -35,7 +35,9 @@ pub struct Initial {
 /// Affine map, then a smooth deformation of every piece with a landmark, then as rigid as possible around rigid
 /// landmarks; pieces without one, and vertices without a face, follow the deformation of the space around them.
 /// Without a landmark, the boxes are laid over each other. A landmark inside a face holds the vertex that counts most
-/// there. Two landmarks on one vertex pull it to the middle. Works in the frame of the box, so units do not
+/// there. Two landmarks on one vertex pull it to the middle. Weights count in the affine map and in the pull of a landmark;
+/// where one is held rather than pulled, in the biharmonic field, a weight below 1 holds it at that share of the way from
+/// where the others bring it to its place. What is rigid is held whatever its weight. Weight 0 is as if it were not there. Works in the frame of the box, so units do not
 /// matter. Where targets change again and again, [`InteractiveInit`](crate::InteractiveInit) is quicker. Source: Mesh
 /// Draping, Correspondence Setup. Departures: fewer than four landmarks, pieces without one; for
 /// [`InitConfig::standard`] see [`LeaveOneOut`](crate::SimilarityPrior::LeaveOneOut) and
@@ -46,6 +48,11 @@ pub struct Initial {
 /// cannot be solved for.
 pub fn initialize(input: InitInput<'_>, config: &InitConfig) -> Result<Initial, InitError> {
     check(&input)?;
+    let followed = Landmark::followed(input.landmarks);
+    let input = InitInput {
+        landmarks: &followed,
+        ..input
+    };
     let frames = FramePair {
         source: UnitFrame::principal(input.rest.as_slice()),
         target: input.target_frame,
@@ -73,6 +80,11 @@ pub fn initialize(input: InitInput<'_>, config: &InitConfig) -> Result<Initial, 
 pub fn adjust(input: InitInput<'_>, present: &Positions) -> Result<Positions, InitError> {
     check(&input)?;
     check_length(input.triangulation.n_vertices(), present)?;
+    let followed = Landmark::followed(input.landmarks);
+    let input = InitInput {
+        landmarks: &followed,
+        ..input
+    };
     deformer(&input, present, &InitConfig::paper())?.solve(&targets(input.landmarks))
 }
 
@@ -93,6 +105,7 @@ fn pull(landmark: &Landmark, placed: &Positions) -> Pull {
         vertex,
         offset: placed[vertex] - landmark.source.position(placed),
         kind: landmark.kind,
+        strength: Strength::of(landmark),
     }
 }
 
@@ -128,6 +141,7 @@ pub(crate) fn check_landmarks(n_vertices: usize, landmarks: &[Landmark]) -> Resu
             .target
             .iter()
             .chain(&l.source.weights)
+            .chain([&l.weight])
             .all(|c| c.is_finite())
         {
             return Err(InitError::NonFiniteLandmark { landmark });
@@ -136,11 +150,13 @@ pub(crate) fn check_landmarks(n_vertices: usize, landmarks: &[Landmark]) -> Resu
     Ok(())
 }
 
-/// Where each landmark is on the source and where it belongs: what the affine map is fitted to.
+/// Where each landmark that counts is on the source and where it belongs: what the affine map is fitted to.
 pub fn point_pairs(landmarks: &[Landmark], rest: &Positions) -> Vec<PointPair> {
     let pair = |l: &Landmark| PointPair {
         source: l.source.position(rest),
         target: l.target,
+        weight: l.pull(),
     };
-    landmarks.iter().map(pair).collect()
+    let followed = landmarks.iter().filter(|l| l.is_followed());
+    followed.map(pair).collect()
 }

@@ -8,7 +8,7 @@ use mesh_operators::SpaceExtension;
 use rayon::prelude::*;
 
 use crate::affine::{fit_affine, AffineFit, FramePair};
-use crate::deformer::{Deformer, Pull};
+use crate::deformer::{Deformer, Pull, Strength};
 use crate::initialize::{check_landmarks, check_length, point_pairs, targets};
 use crate::{InitConfig, InitError, Initial};
 
@@ -60,7 +60,7 @@ pub struct InteractiveInit {
 /// Systems that are factored, and for what.
 #[derive(Clone, Debug)]
 struct Kept {
-    places: Vec<(MeshPoint, LandmarkKind)>,
+    places: Vec<(MeshPoint, LandmarkKind, Strength)>,
     /// The affine map that placed the source; none where a shape was given.
     affine: Option<AffineFit>,
     /// The source, placed.
@@ -112,6 +112,7 @@ impl InteractiveInit {
         target_frame: UnitFrame,
     ) -> Result<Initial, InitError> {
         check_landmarks(self.rest.len(), landmarks)?;
+        let landmarks = &Landmark::followed(landmarks)[..];
         let frames = FramePair {
             source: self.frame,
             target: target_frame,
@@ -155,6 +156,7 @@ impl InteractiveInit {
     ) -> Result<Positions, InitError> {
         check_length(self.rest.len(), present)?;
         check_landmarks(self.rest.len(), landmarks)?;
+        let landmarks = &Landmark::followed(landmarks)[..];
         let is_same =
             |kept: &Kept| kept.affine.is_none() && kept.has(landmarks) && kept.placed == *present;
         let kept = match self.kept.take().filter(is_same) {
@@ -185,6 +187,7 @@ impl InteractiveInit {
                 vertex,
                 offset: placed[held] - l.source.position(&placed),
                 kind: l.kind,
+                strength: Strength::of(l),
             }
         };
         let pulls: Vec<Pull> = landmarks.iter().map(pull).collect();
@@ -238,8 +241,12 @@ impl Kept {
     }
 }
 
-fn places(landmarks: &[Landmark]) -> impl Iterator<Item = (MeshPoint, LandmarkKind)> + '_ {
-    landmarks.iter().map(|l| (l.source, l.kind))
+fn places(
+    landmarks: &[Landmark],
+) -> impl Iterator<Item = (MeshPoint, LandmarkKind, Strength)> + '_ {
+    landmarks
+        .iter()
+        .map(|l| (l.source, l.kind, Strength::of(l)))
 }
 
 /// Distance of each landmark to its place after the map.

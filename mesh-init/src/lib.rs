@@ -56,7 +56,7 @@ pub use guide::{Guide, GuideConfig, GuideInput, LandmarkWays};
 pub use initialize::{adjust, initialize, point_pairs, InitInput, Initial};
 pub use interactive::InteractiveInit;
 pub use pose::{find_pose, Pose, PoseInput};
-pub use similar::{SimilarConfig, SimilarSolver};
+pub use similar::{PulledVertex, SimilarConfig, SimilarSolver};
 
 pub use {mesh_core, mesh_operators};
 

@@ -40,6 +40,25 @@ impl SimilarConfig {
     }
 }
 
+/// A vertex that a landmark pulls.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PulledVertex {
+    /// The vertex.
+    pub vertex: VertexId,
+    /// The landmark's weight, in [`SimilarConfig::landmark_weight`]s, > 0.
+    pub weight: f64,
+}
+
+impl PulledVertex {
+    /// A vertex that a landmark of weight 1 pulls.
+    pub fn new(vertex: VertexId) -> Self {
+        Self {
+            vertex,
+            weight: 1.0,
+        }
+    }
+}
+
 /// Deformation in which every neighbourhood turns and scales as one, drawn towards landmarks.
 ///
 /// Alternates between the frames `F_i = s_i R_i` that carry the surroundings of each vertex, and
@@ -56,7 +75,7 @@ pub struct SimilarSolver {
     size: f64,
     frames: SmoothFrames,
     bending: CsrMatrix<f64>,
-    landmarks: Vec<VertexId>,
+    pulled: Vec<PulledVertex>,
     solve: FixedSolve,
 }
 
@@ -68,7 +87,7 @@ impl SimilarSolver {
     pub fn new(
         triangulation: &Triangulation,
         rest: &Positions,
-        landmarks: &[VertexId],
+        pulled: &[PulledVertex],
         config: SimilarConfig,
     ) -> Result<Self, SolveError> {
         let n = rest.len();
@@ -82,16 +101,17 @@ impl SimilarSolver {
         let bending = pointwise_laplacian(&laplacian, &mass).transpose()
             * (config.bending_length * size).powi(2);
         let mut pull = vec![0.0; n];
-        for v in landmarks {
-            pull[v.index()] = config.landmark_weight;
+        for handle in pulled {
+            pull[handle.vertex.index()] = handle.weight * config.landmark_weight;
         }
+        let landmarks: Vec<VertexId> = pulled.iter().map(|handle| handle.vertex).collect();
         let system = &laplacian + &(&bending * &laplacian) + diagonal(pull.into_iter());
         let is_landmark = |v: &VertexId| landmarks.contains(v);
-        let stay = held_and_unreached(triangulation, landmarks);
+        let stay = held_and_unreached(triangulation, &landmarks);
         let stay: Vec<VertexId> = stay.into_iter().filter(|v| !is_landmark(v)).collect();
         Ok(Self {
             solve: FixedSolve::new(&system, &stay)?,
-            landmarks: landmarks.to_vec(),
+            pulled: pulled.to_vec(),
             config,
             size,
             frames,
@@ -106,7 +126,7 @@ impl SimilarSolver {
     pub fn solve(&self, targets: &[Point3], guess: &Positions) -> Positions {
         assert_eq!(
             targets.len(),
-            self.landmarks.len(),
+            self.pulled.len(),
             "one target for each landmark"
         );
         let mut x = guess.clone();
@@ -117,8 +137,9 @@ impl SimilarSolver {
             for (r, d) in right.iter_mut().zip(&delta) {
                 *r += d;
             }
-            for (v, target) in self.landmarks.iter().zip(targets) {
-                right[v.index()] += target.coords * self.config.landmark_weight;
+            for (handle, target) in self.pulled.iter().zip(targets) {
+                let weight = handle.weight * self.config.landmark_weight;
+                right[handle.vertex.index()] += target.coords * weight;
             }
 
             let mut next: Vec<Vector3> = x.iter().map(|p| p.coords).collect();

@@ -1,12 +1,9 @@
 //! Distances between a draped mesh and its target, both ways, in the common frame.
 
-use mesh_core::sampling::{SeededRng, TriangleSampler};
-use mesh_core::{
-    Location, Point3, Positions, SurfacePoint, TargetSurface, TriangleBvh, Triangulation, Vector3,
-    VertexData,
-};
+use mesh_core::{Location, Positions, SurfacePoint, TargetSurface, Triangulation, VertexData};
 
 use crate::config::EvaluationConfig;
+use crate::counterparts::Counterparts;
 use crate::normalize::common_frame;
 
 /// What the target is, and so what a distance to it means.
@@ -69,31 +66,9 @@ impl SurfaceDistances {
         target: &dyn TargetSurface,
         config: &EvaluationConfig,
     ) -> Self {
-        let mut rng = SeededRng::new(config.seed);
-        let unit = 1.0 / common_frame(target).scale;
-        let to_target = |points: &[Point3]| lengths(&target.closest_points(points), unit);
-        let bvh = TriangleBvh::new(triangulation.corners(draped).collect());
-        let to_draped = |points: &[Point3]| lengths(&bvh.closest_points(points), unit);
-
-        let samples = sample_by_area(triangulation, draped, config.n_samples, &mut rng);
-        let vertices: Vec<Point3> = triangulation.used_vertices().map(|v| draped[v]).collect();
-        let (target_samples, target_vertices) = match TargetKind::of(target) {
-            TargetKind::Surface => (
-                target_sample(target, config.n_samples, &mut rng),
-                target.vertices(),
-            ),
-            TargetKind::Cloud => (target.vertices(), Vec::new()),
-        };
-        Self {
-            to_target: DirectedDistances {
-                of_samples: to_target(&samples),
-                of_vertices: to_target(&vertices),
-            },
-            to_draped: DirectedDistances {
-                of_samples: to_draped(&target_samples),
-                of_vertices: to_draped(&target_vertices),
-            },
-        }
+        let all = Counterparts::all(draped.len());
+        all.distances(triangulation, draped, target, config)
+            .distances
     }
 }
 
@@ -107,27 +82,5 @@ fn lengths(closest: &[SurfacePoint], unit: f64) -> Vec<f64> {
     closest
         .iter()
         .map(|c| c.distance_squared.sqrt() * unit)
-        .collect()
-}
-
-fn target_sample(target: &dyn TargetSurface, n: usize, rng: &mut SeededRng) -> Vec<Point3> {
-    target.sample(n, rng).iter().map(|s| s.point).collect()
-}
-
-/// `n` points, uniform by area, one in each of `n` equal shares of the area; over triangles alike if none has area.
-fn sample_by_area(
-    triangulation: &Triangulation,
-    x: &Positions,
-    n: usize,
-    rng: &mut SeededRng,
-) -> Vec<Point3> {
-    let corners: Vec<[Point3; 3]> = triangulation.corners(x).collect();
-    let areas = mesh_core::measure::triangle_areas(triangulation, x);
-    let places = TriangleSampler::new(areas).sample(n, rng).into_iter();
-    places
-        .map(|(row, weights)| {
-            let weighted = (0..3).map(|k| corners[row][k].coords * weights[k]);
-            Point3::from(weighted.sum::<Vector3>())
-        })
         .collect()
 }

@@ -1,6 +1,10 @@
 //! Everything about one result, measured at once.
 
-use mesh_core::{FaceId, Landmark, Point3, Positions, TargetSurface, Triangulation, UnitFrame};
+use std::sync::Arc;
+
+use mesh_core::{
+    Curve, FaceId, Landmark, Point3, Positions, TargetSurface, Triangulation, UnitFrame,
+};
 
 use crate::chamfer::chamfer;
 use crate::config::EvaluationConfig;
@@ -15,7 +19,7 @@ use crate::normalize::{common_frame, own_frame};
 use crate::percentile::percentiles;
 use crate::q_transfer::{q_transfer, HAUSDORFF_WEIGHT, PAPER_TAU};
 use crate::report::{
-    Defects, DistanceSummary, LandmarkFit, LandmarkResidual, Places, Report, TruthError,
+    CurveFit, Defects, DistanceSummary, LandmarkFit, LandmarkResidual, Places, Report, TruthError,
 };
 use crate::self_intersection::{new_intersections, self_intersections, without_neighbours};
 
@@ -120,6 +124,7 @@ pub fn evaluate(
         to_draped,
         defects,
         landmarks: landmark_fit(input.landmarks, draped, &frame),
+        curves: curve_fits(input.landmarks, draped, &frame),
         truth: input
             .truth
             .map(|truth| truth_error(triangulation, draped, truth, &frame)),
@@ -234,22 +239,42 @@ fn landmark_fit(
     draped: &Positions,
     frame: &UnitFrame,
 ) -> Option<LandmarkFit> {
+    let marked = Landmark::marked(landmarks);
     let residual = |landmark: &Landmark| LandmarkResidual {
         name: landmark.name.clone(),
-        distance: distance(&landmark.source.position(draped), &landmark.target, frame),
+        distance: miss(landmark, draped, frame),
     };
-    let residuals: Vec<LandmarkResidual> = landmarks.iter().map(residual).collect();
-    let n = residuals.len() as f64;
+    let followed = marked.clone().filter(|l| l.is_followed());
+    let followed: Vec<f64> = followed.map(|l| miss(l, draped, frame)).collect();
+    let residuals: Vec<LandmarkResidual> = marked.map(residual).collect();
     (!residuals.is_empty()).then(|| LandmarkFit {
-        rms: (residuals
-            .iter()
-            .map(|r| r.distance * r.distance)
-            .sum::<f64>()
-            / n)
-            .sqrt(),
-        max: residuals.iter().map(|r| r.distance).fold(0.0, f64::max),
+        rms: rms(&followed),
+        max: followed.iter().copied().fold(0.0, f64::max),
         residuals,
     })
+}
+
+fn curve_fits(landmarks: &[Landmark], draped: &Positions, frame: &UnitFrame) -> Vec<CurveFit> {
+    let fit = |(curve, cut): (&Arc<Curve>, &[Landmark])| {
+        let misses: Vec<f64> = cut.iter().map(|l| miss(l, draped, frame)).collect();
+        CurveFit {
+            name: curve.name.clone(),
+            rms: rms(&misses),
+            max: misses.iter().copied().fold(0.0, f64::max),
+        }
+    };
+    Curve::runs(landmarks).map(fit).collect()
+}
+
+/// How far a landmark is from where it belongs.
+fn miss(landmark: &Landmark, draped: &Positions, frame: &UnitFrame) -> f64 {
+    distance(&landmark.source.position(draped), &landmark.target, frame)
+}
+
+/// Root of the mean square; 0 of nothing.
+fn rms(distances: &[f64]) -> f64 {
+    let squared = distances.iter().map(|d| d * d).sum::<f64>();
+    (squared / distances.len().max(1) as f64).sqrt()
 }
 
 /// Distance of the vertices in use from where they belong.

@@ -5,6 +5,7 @@
 //! | get everything at once | [`evaluate()`] → [`Report`] |
 //! | score fit and distortion together | [`q_transfer()`] |
 //! | measure distances both ways | [`SurfaceDistances::measure`], [`vertex_distances`] |
+//! | measure them over what has a counterpart on the other | [`Counterparts::distances`] |
 //! | sum them up | [`chamfer()`], [`hausdorff_sampled`], [`directed_hausdorff_sampled`], [`percentiles`] |
 //! | measure distortion | [`dirichlet_unit_area`], [`dirichlet_energy`], [`face_stretch`], [`mean_angle_deviation`] |
 //! | find defects | [`folded_edges`], [`skinny_triangles`], [`triangle_qualities`], [`opposed_triangles`], [`self_intersections`], [`new_crossings`] |
@@ -17,6 +18,7 @@
 
 mod chamfer;
 mod config;
+mod counterparts;
 mod defects;
 mod dirichlet;
 mod distances;
@@ -31,6 +33,7 @@ mod table;
 
 pub use chamfer::{chamfer, Chamfer};
 pub use config::EvaluationConfig;
+pub use counterparts::{CountedDistances, Counterparts};
 pub use defects::{
     folded_edges, mean_angle_deviation, opposed_triangles, skinny_triangles, triangle_qualities,
     FOLD_COSINE, SKINNY_QUALITY,
@@ -43,7 +46,7 @@ pub use normalize::{common_frame, own_frame, total_area};
 pub use percentile::percentiles;
 pub use q_transfer::{q_transfer, HAUSDORFF_WEIGHT, PAPER_TAU};
 pub use report::{
-    Defects, DistanceSummary, LandmarkFit, LandmarkResidual, Places, Report, TruthError,
+    CurveFit, Defects, DistanceSummary, LandmarkFit, LandmarkResidual, Places, Report, TruthError,
 };
 pub use self_intersection::{new_crossings, self_intersections};
 

@@ -32,6 +32,9 @@ pub struct Report {
     pub defects: Defects,
     /// How well the landmarks are met; none without landmarks.
     pub landmarks: Option<LandmarkFit>,
+    /// How well curves are met, in order.
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Vec::is_empty"))]
+    pub curves: Vec<CurveFit>,
     /// How far vertices are from where they belong; none where that is not known.
     pub truth: Option<TruthError>,
     /// Where the defects are.
@@ -88,13 +91,13 @@ pub struct Defects {
     pub crossings: usize,
 }
 
-/// How well the landmarks are met.
+/// How well the landmarks are met that were marked one by one.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct LandmarkFit {
-    /// Root of the mean squared distance.
+    /// Root of the mean squared distance of those with a weight above 0.
     pub rms: f64,
-    /// Largest distance.
+    /// Their largest distance.
     pub max: f64,
     /// Each landmark, in the order given.
     pub residuals: Vec<LandmarkResidual>,
@@ -108,6 +111,18 @@ pub struct LandmarkResidual {
     pub name: Option<String>,
     /// How far it is off.
     pub distance: f64,
+}
+
+/// How far a curve is from where it belongs, over its landmarks.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct CurveFit {
+    /// What the user calls it.
+    pub name: Option<String>,
+    /// Root of the mean squared distance.
+    pub rms: f64,
+    /// Largest distance.
+    pub max: f64,
 }
 
 /// Distance of the vertices in use from where they belong.

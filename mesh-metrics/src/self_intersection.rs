@@ -119,14 +119,7 @@ mod tests {
     fn pairs_of(shapes: &[PolygonSoup]) -> Vec<[usize; 2]> {
         let mut all = PolygonSoup::default();
         for shape in shapes {
-            let first = all.positions.len() as u32;
-            all.positions.extend(&shape.positions);
-            all.faces.extend(
-                shape
-                    .faces
-                    .iter()
-                    .map(|f| f.iter().map(|v| v + first).collect::<Vec<_>>()),
-            );
+            all.append(shape.clone());
         }
         let (mesh, rest) = all.into_halfedge().unwrap();
         self_intersections(&Triangulation::new(&mesh, &rest), &rest)

@@ -5,7 +5,7 @@ use std::fmt;
 use mesh_core::io::printable;
 
 use crate::distances::TargetKind;
-use crate::report::{Defects, LandmarkFit, Report};
+use crate::report::{CurveFit, Defects, LandmarkFit, Report};
 
 /// Lengths are printed in hundredths of the box side, like the paper's table.
 const HUNDREDTHS: f64 = 1e2;
@@ -36,6 +36,9 @@ impl fmt::Display for Report {
         if let Some(fit) = &self.landmarks {
             writeln!(f)?;
             write_landmarks(f, fit)?;
+        }
+        for (row, fit) in self.curves.iter().enumerate() {
+            write_curve(f, row, fit)?;
         }
         if let Some(error) = &self.truth {
             let [mean, p95, max] = [error.mean, error.p95, error.max].map(|d| d * HUNDREDTHS);
@@ -126,6 +129,13 @@ fn write_defects(f: &mut fmt::Formatter<'_>, defects: &Defects) -> fmt::Result {
         "{:<26}{:>10.4}   degrees",
         "corner angle change, mean", defects.angle_deviation_deg
     )
+}
+
+fn write_curve(f: &mut fmt::Formatter<'_>, row: usize, fit: &CurveFit) -> fmt::Result {
+    let name = fit.name.as_deref().map(printable);
+    let name = name.map_or(format!("curve {row}"), |name| format!("curve {name}"));
+    let [rms, max] = [fit.rms, fit.max].map(|d| d * HUNDREDTHS);
+    writeln!(f, "{name:<26}rms {rms:.3}, worst {max:.3}")
 }
 
 fn write_landmarks(f: &mut fmt::Formatter<'_>, fit: &LandmarkFit) -> fmt::Result {

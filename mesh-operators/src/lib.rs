@@ -9,6 +9,7 @@
 //! | minimise `xᵀ A x` with some rows held | [`FixedSolve`] |
 //! | extend displacements to all of space | [`SpaceExtension`] |
 //! | measure along a surface | [`geodesic_distance_unfolded`] |
+//! | go along a surface from one place to another | [`surface_path`] |
 //!
 //! Matrices are [`nalgebra_sparse::CsrMatrix`] of `f64`, one row per vertex; polygons count as the triangles of their
 //! [`mesh_core::Triangulation`]. Right-hand sides are numbers or vectors ([`SolveValue`]). The crates that the signatures
@@ -22,6 +23,7 @@ mod geodesic;
 mod mass;
 mod space_extension;
 mod spd_solver;
+mod surface_path;
 mod uniform_laplacian;
 
 pub use bilaplacian::{bilaplacian, multiply, pointwise_laplacian};
@@ -32,6 +34,7 @@ pub use geodesic::geodesic_distance_unfolded;
 pub use mass::{barycentric_mass, voronoi_mass};
 pub use space_extension::{Kernel, SpaceExtension};
 pub use spd_solver::{SolveValue, SpdSolver};
+pub use surface_path::surface_path;
 pub use uniform_laplacian::uniform_laplacian;
 
 pub use mesh_core;

@@ -37,7 +37,7 @@ impl<'a> Gallery<'a> {
         size: usize,
     ) -> Result<Self, RenderError> {
         let matches = pair.source.rest().iter().zip(placed.iter());
-        let matches = matches.map(|(&source, &target)| PointPair { source, target });
+        let matches = matches.map(|(&source, &target)| PointPair::new(source, target));
         let turn = Similarity::fit(&matches.collect::<Vec<_>>()).turn;
         Ok(Self {
             target: Model::of_target(&pair.target)?,

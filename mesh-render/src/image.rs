@@ -124,17 +124,12 @@ impl Image {
     /// # Errors
     /// A picture without a pixel.
     pub fn to_png(&self) -> Result<Vec<u8>, RenderError> {
-        let mut bytes = Vec::new();
-        let mut encoder = png::Encoder::new(&mut bytes, self.width as u32, self.height as u32);
-        encoder.set_color(png::ColorType::Rgba);
-        encoder.set_depth(png::BitDepth::Eight);
-        encoder.set_compression(png::Compression::High);
-        let written = encoder.write_header().and_then(|mut writer| {
-            writer.write_image_data(self.pixels.as_flattened())?;
-            writer.finish()
-        });
-        written.map_err(|error| RenderError::Encode(error.to_string()))?;
-        Ok(bytes)
+        let samples = (png::ColorType::Rgba, png::BitDepth::Eight);
+        encode_png(
+            [self.width, self.height],
+            samples,
+            self.pixels.as_flattened(),
+        )
     }
 
     /// Writes a PNG file on a light background.
@@ -156,6 +151,25 @@ impl Image {
         let digits = STANDARD.encode(self.to_png()?);
         Ok(format!("data:image/png;base64,{digits}"))
     }
+}
+
+/// The bytes of a PNG file with these samples, rows from the top.
+pub(crate) fn encode_png(
+    [width, height]: [usize; 2],
+    (color, depth): (png::ColorType, png::BitDepth),
+    samples: &[u8],
+) -> Result<Vec<u8>, RenderError> {
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, width as u32, height as u32);
+    encoder.set_color(color);
+    encoder.set_depth(depth);
+    encoder.set_compression(png::Compression::High);
+    let written = encoder.write_header().and_then(|mut writer| {
+        writer.write_image_data(samples)?;
+        writer.finish()
+    });
+    written.map_err(|error| RenderError::Encode(error.to_string()))?;
+    Ok(bytes)
 }
 
 #[cfg(test)]

@@ -6,9 +6,11 @@
 //! | draw the shapes of a drape, all from one direction | [`Gallery`] |
 //! | find which way is up | [`Upright`], [`Up`] |
 //! | put pictures beside each other, write a PNG file | [`Image`] |
+//! | carry the target's colours, normals and relief into the source's texture | [`bake`] |
 //! | make the report page of a drape | [`Page`] |
 //! | build another self-contained page | [`html`] |
 
+pub mod bake;
 mod camera;
 pub mod color;
 mod error;

@@ -116,6 +116,7 @@ pub enum OverlapMode {
     /// The target covers only a part of the source, as a scan does.
     TargetPartial,
     /// Each has parts that the other lacks.
+    #[serde(alias = "both")]
     BothPartial,
 }
 

@@ -90,7 +90,8 @@ pub(crate) fn check_landmarks(landmarks: &[Landmark], n_vertices: usize) -> Resu
             .source
             .weights
             .iter()
-            .chain(&landmark.target.coords);
+            .chain(&landmark.target.coords)
+            .chain([&landmark.weight]);
         if numbers.into_iter().any(|x| !x.is_finite()) {
             return Err(DrapeError::LandmarkNotFinite { landmark: row });
         }

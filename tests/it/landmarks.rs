@@ -53,6 +53,95 @@ fn suggest_names_a_place_far_from_the_others() {
 }
 
 #[test]
+fn point_files_of_wrap_are_written_and_read() {
+    let place = Workplace::new();
+    let line = "landmarks convert source.obj target.ply";
+    place
+        .drape(&format!(
+            "{line} landmarks.json -o a.json --target-output b.json"
+        ))
+        .well();
+    let on_source: Value = serde_json::from_str(&place.read("a.json")).expect("JSON");
+    assert_eq!(on_source["right"].as_array().map(Vec::len), Some(3));
+    place
+        .drape(&format!(
+            "{line} a.json --target-points b.json -o back.json"
+        ))
+        .well();
+    let [before, after] = ["landmarks.json", "back.json"].map(|name| {
+        let json: Value = serde_json::from_str(&place.read(name)).expect("JSON");
+        let list = json["landmarks"].as_array().expect("a list").clone();
+        list.iter()
+            .map(|l| l["name"].as_str().map(str::to_owned))
+            .collect::<std::collections::BTreeSet<_>>()
+    });
+    assert_eq!(before, after);
+    let lone = place.drape(&format!("{line} a.json -o back.json"));
+    assert_eq!((lone.code, lone.stderr.lines().count()), (Some(2), 1));
+}
+
+#[test]
+fn curves_and_weights_are_draped_told_and_converted() {
+    let place = Workplace::new();
+    let mut json: Value = serde_json::from_str(&place.read("landmarks.json")).expect("JSON");
+    json["landmarks"][1]["weight"] = json!(0.5);
+    // A quarter of the girdle of the ball, from the front to the right.
+    let turn = [0.0, 0.3, 0.6, 0.9, 1.2, 1.5].map(f64::sin_cos);
+    let source = turn.map(|(sin, cos)| [sin, 0.0, cos]);
+    let target = turn.map(|(sin, cos)| [10.0 + 4.0 * sin, 0.0, 2.5 * cos - 5.0]);
+    let list = json["landmarks"].as_array_mut().expect("a list");
+    list.insert(
+        0,
+        json!({ "name": "girdle", "curve": { "source": source, "target": target } }),
+    );
+    place.write("curved.json", &json.to_string());
+    let line = "source.obj target.ply --landmarks curved.json --preset quick -o out.obj";
+    place
+        .drape(&format!("transfer {line} --report report.html"))
+        .well();
+    assert!(place.read("report.html").contains("curve 0 (girdle)"));
+    let metrics = "metrics source.obj out.obj target.ply --landmarks curved.json --json";
+    let report = place.drape(metrics).well().json();
+    let worst = report["report"]["curves"][0]["max"]
+        .as_f64()
+        .expect("a number");
+    assert!(worst < 0.01, "{worst}");
+    let check = place
+        .drape("landmarks check source.obj target.ply curved.json")
+        .well();
+    assert!(
+        check.stdout.contains("nothing looks wrong"),
+        "{}",
+        check.stdout
+    );
+    let convert = "landmarks convert source.obj target.ply curved.json -o";
+    let lost = place.drape(&format!("{convert} plain.txt"));
+    assert!(
+        lost.stderr.contains("1 curve is left out"),
+        "{}",
+        lost.stderr
+    );
+    assert!(lost.stderr.contains("the weight of 1 landmark is left out"));
+    place.drape(&format!("{convert} again.json")).well();
+    let [a, b] = ["curved.json", "again.json"].map(|name| {
+        let line = format!("init source.obj target.ply --landmarks {name} -o {name}.obj");
+        place.drape(&line).well();
+        place.read(&format!("{name}.obj"))
+    });
+    assert!(a == b);
+    json["landmarks"][0]["curve"]["target"] = json!([[10.0, 0.0, -2.5]]);
+    place.write("bad.json", &json.to_string());
+    let bad = place.drape("landmarks check source.obj target.ply bad.json");
+    assert_eq!(bad.code, Some(2));
+    assert!(
+        bad.stderr
+            .contains("bad.json: curve 0 (girdle): has 1 places on the target"),
+        "{}",
+        bad.stderr
+    );
+}
+
+#[test]
 fn mirror_adds_the_other_half() {
     let place = Workplace::new();
     let json = json!({"landmarks": [

@@ -2,6 +2,7 @@
 
 mod architecture;
 mod bad_input;
+mod bake;
 mod commands;
 mod data;
 mod gate;

@@ -224,6 +224,14 @@ fn inspect_proposes_the_inner_pieces() {
     assert!(seen.stdout.contains("open piece inside"), "{}", seen.stdout);
     let alone = place.drape("inspect head.obj --hidden").well();
     assert_eq!(alone.stdout, seen.stdout);
+    let mesh = std::fs::read(place.path("skin.ply")).unwrap();
+    let confused = place.drape("inspect head.obj --hidden skin.ply");
+    assert!(
+        confused.stderr.contains("would replace a mesh"),
+        "{}",
+        confused.stderr
+    );
+    assert_eq!(std::fs::read(place.path("skin.ply")).unwrap(), mesh);
     for part in ["--free inner.txt", "--free hidden:1 --draped hidden:4"] {
         let line = "transfer head.obj skin.ply -l head.json --config short.toml -o out.obj";
         place.drape(&format!("{line} {part}")).well();

@@ -63,6 +63,59 @@ fn a_batch_names_its_outputs_from_a_pattern() {
 }
 
 #[test]
+fn parts_of_a_batch_come_together_in_one_table() {
+    let place = Workplace::new();
+    for name in ["second.ply", "third.ply"] {
+        std::fs::copy(place.path("target.ply"), place.path(name)).expect("a copy");
+    }
+    let line =
+        "batch source.obj target.ply second.ply third.ply -o done/{target}.obj --config short.toml";
+    for (part, n) in [("1/2", 2), ("2/2", 1)] {
+        let ended = place.drape(&format!("{line} --shard {part}")).well();
+        let told = format!("{n} of {n} runs of this part done");
+        assert!(ended.stdout.contains(&told), "{}", ended.stdout);
+    }
+    assert!(!place.exists("drape-batch/results.csv"));
+    let again = place.drape(&format!("{line} --shard 1/2")).well();
+    assert!(again.stderr.starts_with("2 runs, 2 done before"));
+    let whole = place.drape(line).well();
+    assert!(
+        whole.stderr.starts_with("3 runs, 3 done before"),
+        "{}",
+        whole.stderr
+    );
+    assert_eq!(place.read("drape-batch/results.csv").lines().count(), 4);
+    let beyond = place.drape(&format!("{line} --shard 3/2"));
+    assert_eq!((beyond.code, beyond.stderr.lines().count()), (Some(2), 1));
+}
+
+#[test]
+fn frames_of_a_motion_start_from_those_before() {
+    let place = Workplace::new();
+    for name in ["b.ply", "c.ply"] {
+        std::fs::copy(place.path("target.ply"), place.path(name)).expect("a copy");
+    }
+    std::fs::copy(place.path("landmarks.json"), place.path("target.json")).expect("a copy");
+    let line = "batch source.obj target.ply b.ply c.ply -l {target}.json -o done/{target}.obj --config short.toml --sequence";
+    place.drape(line).well();
+    let rows: serde_json::Value =
+        serde_json::from_str(&place.read("drape-batch/results.json")).expect("JSON");
+    let commands: Vec<String> = (rows.as_array().expect("rows").iter())
+        .map(|row| row["command"].to_string())
+        .collect();
+    assert!(!commands[0].contains("--from") && commands[0].contains("--landmarks"));
+    assert!(commands[1].contains("done/target.obj") && commands[2].contains("done/b.obj"));
+    assert!(!commands[1].contains("--landmarks"));
+    let again = place.drape(line).well();
+    assert!(
+        again.stderr.starts_with("3 runs, 3 done before"),
+        "{}",
+        again.stderr
+    );
+    assert_eq!(place.drape(&format!("{line} --jobs 2")).code, Some(2));
+}
+
+#[test]
 fn a_manifest_with_a_mistake_is_refused_before_any_run() {
     let place = Workplace::new();
     place.write(

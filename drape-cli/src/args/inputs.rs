@@ -1,10 +1,11 @@
 //! What is draped over what, and how the source's file is read.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-use mesh_core::io::{MeshFile, Morphs};
+use anyhow::Context as _;
+use mesh_core::io::{Format, MeshFile, Morphs};
 use mesh_core::Positions;
-use mesh_draping::{landmarks, Pair, Seams, Source, Target};
+use mesh_draping::{landmarks, Pair, Population, Seams, Source, Target};
 
 use super::PipeArgs;
 use crate::output::{left_beside, warn};
@@ -116,6 +117,18 @@ impl Inputs<'_> {
             landmarks,
         })
     }
+}
+
+/// The population of all results in a folder, in the order of their names.
+pub(crate) fn read_population(folder: &Path, source: &Source) -> anyhow::Result<Population> {
+    let entries = std::fs::read_dir(folder).with_context(|| format!("{}", folder.display()))?;
+    let paths = entries.map(|entry| Ok(entry?.path()));
+    let mut paths = paths.collect::<std::io::Result<Vec<PathBuf>>>()?;
+    paths.retain(|path| path.is_file() && Format::of_extension(path).is_some());
+    paths.sort();
+    let shapes = paths.iter().map(|path| read_truth(path, source));
+    Population::of(&shapes.collect::<anyhow::Result<Vec<_>>>()?)
+        .with_context(|| format!("{}: holds no mesh", folder.display()))
 }
 
 /// Share of the longest side from which vertices that should be one are apart: text may be rounded.

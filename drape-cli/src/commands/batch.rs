@@ -8,8 +8,8 @@ use mesh_draping::Preset;
 
 use super::evaluate::tell;
 use crate::args::{is_pipe, MorphArgs, SettingsArgs, WeldArgs};
-use crate::output::{check_distinct, check_mesh};
-use crate::suite::{self, stem, Method, Pair, Pool, Task};
+use crate::output::{check_distinct, check_mesh, say};
+use crate::suite::{self, stem, Method, Pair, Pool, Shard, Task};
 use crate::FAILED;
 
 #[derive(Debug, clap::Args)]
@@ -37,6 +37,18 @@ pub(crate) struct Args {
     /// Runs at a time
     #[arg(long, value_name = "N", default_value_t = 1)]
     jobs: usize,
+    /// Only the K-th of N parts of the targets, for one machine of many; when all parts are done, the same line without
+    /// this writes the tables
+    #[arg(long, value_name = "K/N")]
+    shard: Option<Shard>,
+    /// The targets are the frames of a motion, in order: each drape starts from the result of the one before. Landmarks
+    /// may lack from the second frame on
+    #[arg(long, conflicts_with_all = ["shard", "jobs"])]
+    sequence: bool,
+    /// Start every drape from the shape that fits best of those that the results in this folder span; not a folder that
+    /// this batch writes to
+    #[arg(long, value_name = "FOLDER", conflicts_with = "sequence")]
+    prior: Option<PathBuf>,
 }
 
 pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
@@ -56,11 +68,27 @@ pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
     for pattern in args.landmarks.iter().chain([&args.output]) {
         check_pattern(pattern)?;
     }
-    let tasks = tasks(args)?;
-    let rows = suite::run(&tasks, &args.summary, &Pool::new(args.jobs)?)?;
-    let n_failed = tell(&rows, &args.summary)?;
+    let (tasks, pool) = (tasks(args)?, Pool::new(args.jobs)?);
+    let n_failed = match args.shard {
+        None => tell(&suite::run(&tasks, &args.summary, &pool)?, &args.summary)?,
+        Some(shard) => {
+            let rows = suite::run_shard(shard, &shard.of(tasks), &args.summary, &pool)?;
+            tell_shard(&rows)?
+        }
+    };
     // What was asked for is not all there: bad input, as with one target.
     Ok(ExitCode::from(if n_failed > 0 { FAILED } else { 0 }))
+}
+
+/// Says how many runs of a shard are done; how many failed.
+fn tell_shard(rows: &[suite::Row]) -> anyhow::Result<usize> {
+    let n_failed = rows.iter().filter(|row| row.error.is_some()).count();
+    say(&format!(
+        "{} of {} runs of this part done; without --shard, the same line writes the tables\n",
+        rows.len() - n_failed,
+        rows.len()
+    ))?;
+    Ok(n_failed)
 }
 
 fn tasks(args: &Args) -> anyhow::Result<Vec<Task>> {
@@ -75,6 +103,11 @@ fn tasks(args: &Args) -> anyhow::Result<Vec<Task>> {
     ];
     options.extend(option("initial", settings.initial));
     options.extend(option("overlap", settings.overlap));
+    options.extend(
+        args.prior
+            .iter()
+            .map(|p| format!("--prior={}", p.display())),
+    );
     let mut tasks: Vec<Task> = Vec::new();
     for target in &args.targets {
         let named = |pattern: &str| PathBuf::from(fill(pattern, &args.source, target));
@@ -92,16 +125,25 @@ fn tasks(args: &Args) -> anyhow::Result<Vec<Task>> {
                 .with_context(|| format!("{}: the folder cannot be made", folder.display()))?;
         }
         check_mesh(&output)?;
+        check_not_prior(&output, args.prior.as_deref())?;
         check_distinct(&output, &[&args.source, target])?;
         tasks.push(Task {
             pair: Pair {
                 name: stem(&output),
                 source: args.source.clone(),
                 target: target.clone(),
-                landmarks: args.landmarks.as_deref().map(named),
+                landmarks: args
+                    .landmarks
+                    .as_deref()
+                    .map(named)
+                    .filter(|path| !args.sequence || tasks.is_empty() || path.is_file()),
                 truth: None,
                 judge: None,
             },
+            from: tasks
+                .last()
+                .filter(|_| args.sequence)
+                .map(|before| before.output.clone()),
             method: method.clone(),
             options: options.clone(),
             seed: settings.seed.unwrap_or(0),
@@ -110,6 +152,23 @@ fn tasks(args: &Args) -> anyhow::Result<Vec<Task>> {
         });
     }
     Ok(tasks)
+}
+
+/// Refuses a prior that would grow while the batch runs: results would depend on their order.
+fn check_not_prior(output: &Path, prior: Option<&Path>) -> anyhow::Result<()> {
+    let (Some(folder), Some(prior)) = (output.parent(), prior) else {
+        return Ok(());
+    };
+    let is_same = match (folder.canonicalize(), prior.canonicalize()) {
+        (Ok(folder), Ok(prior)) => folder == prior,
+        _ => false,
+    };
+    ensure!(
+        !is_same,
+        "{}: the results of this batch cannot be their own prior; name another folder",
+        prior.display()
+    );
+    Ok(())
 }
 
 /// An option of the command line with the name of its value, where it is given.

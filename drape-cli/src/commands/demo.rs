@@ -8,7 +8,9 @@ use mesh_draping::mesh_metrics::Report;
 use mesh_draping::Seams;
 
 use super::transfer;
-use crate::args::{MorphArgs, Morphing, PartArgs, PipeArgs, SettingsArgs, ViewArgs, WeldArgs};
+use crate::args::{
+    BakeArgs, MorphArgs, Morphing, PartArgs, PipeArgs, SettingsArgs, ViewArgs, WeldArgs,
+};
 use crate::creatures;
 use crate::output::say;
 use crate::profile::ProfileArgs;
@@ -26,6 +28,10 @@ pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let files = creatures::write(&args.output, &creatures::demo_pair())?;
     let name = |name: &str| args.output.join(name);
     let transfer = transfer::Args {
+        from: None,
+        prior: None,
+        symmetric: false,
+        bake: BakeArgs::none(),
         profile: ProfileArgs { profile: false },
         source: files.source,
         target: files.target,

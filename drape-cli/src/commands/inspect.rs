@@ -1,10 +1,10 @@
 //! `drape inspect`
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::Context as _;
-use mesh_core::io::write_atomic;
+use mesh_core::io::{write_atomic, Format};
 use mesh_draping::parts::inner_surfaces;
 use mesh_draping::{Seams, Source, Target, Treatment};
 use mesh_render::{color, draw, Axes, Image, Look, Model, Shot, Upright, View};
@@ -47,6 +47,9 @@ pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
     {
         check_writable(path)?;
     }
+    if let Some(path) = &args.hidden {
+        check_is_no_mesh(path)?;
+    }
     let file = args.pipe.read(&args.file, None)?;
     warn(&findings(&file));
     let inspection = Inspection::of(&file).with_context(|| args.file.display().to_string())?;
@@ -87,6 +90,17 @@ pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
         Image::row(&pictures.collect::<Vec<_>>()).save(path)?;
     }
     Ok(ExitCode::SUCCESS)
+}
+
+/// What follows `--hidden` is written, so a mesh there was meant to be read.
+fn check_is_no_mesh(path: &Path) -> anyhow::Result<()> {
+    anyhow::ensure!(
+        Format::of_extension(path).is_none_or(|format| format == Format::Xyz),
+        "{}: the list of inner surfaces would replace a mesh; put the mesh before --hidden, and after it nothing or the \
+         name of a text file",
+        path.display()
+    );
+    Ok(())
 }
 
 /// The inner surfaces in words, and a list of their vertices as `--free` and `--rigid` read it.

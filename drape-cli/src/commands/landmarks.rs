@@ -7,8 +7,10 @@ use std::process::ExitCode;
 use anyhow::ensure;
 use clap::Subcommand;
 use mesh_core::io::write_atomic;
-use mesh_core::Landmark;
-use mesh_draping::landmarks::{self, leave_one_out_residuals, Finding, Form, Label};
+use mesh_core::{Curve, Landmark};
+use mesh_draping::landmarks::{
+    self, leave_one_out_residuals, Finding, Form, Label, Lost, WrapPoints,
+};
 use mesh_draping::{Pair, Seams};
 
 use crate::args::{Inputs, PipeArgs};
@@ -29,7 +31,19 @@ enum Task {
     /// Add the landmarks of the other half of a symmetric source
     Mirror(Output),
     /// Write landmarks in another form
-    Convert(Output),
+    Convert(Convert),
+}
+
+#[derive(Debug, clap::Args)]
+struct Convert {
+    #[command(flatten)]
+    output: Output,
+    /// LANDMARKS is a point file of Faceform Wrap on the source, [[triangle, u, v], …], and this the one on the target
+    #[arg(long, value_name = "FILE")]
+    target_points: Option<PathBuf>,
+    /// Write point files of Faceform Wrap: -o on the source, and this on the target
+    #[arg(long, value_name = "OUT", conflicts_with = "to")]
+    target_output: Option<PathBuf>,
 }
 
 #[derive(Debug, clap::Args)]
@@ -69,9 +83,9 @@ struct Output {
 /// [`Form`] on the command line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 enum FormArg {
-    /// JSON with names, places in faces and kinds: nothing is lost
+    /// JSON with names, places in faces, kinds, weights and curves: nothing is lost
     Json,
-    /// JSON of two lists, source_vertices and target_points
+    /// JSON of two lists, source_vertices and target_points, and weights where any is not 1
     Lists,
     /// Lines of source vertex, target x y z, name
     Text,
@@ -95,10 +109,14 @@ impl From<FormArg> for Form {
 
 impl Files {
     fn read(&self) -> anyhow::Result<Pair> {
+        self.read_with(Some(&self.landmarks))
+    }
+
+    fn read_with(&self, landmarks: Option<&Path>) -> anyhow::Result<Pair> {
         let inputs = Inputs {
             source: &self.source,
             target: &self.target,
-            landmarks: Some(&self.landmarks),
+            landmarks,
             seams: Seams::EXACT,
             output: None,
             pipe: PipeArgs::default(),
@@ -112,11 +130,7 @@ pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
         Task::Check(files) => check(files),
         Task::Suggest(args) => next(args),
         Task::Mirror(args) => add_mirrored(args),
-        Task::Convert(args) => {
-            args.check()?;
-            let pair = args.files.read()?;
-            args.write(&pair, &pair.landmarks)
-        }
+        Task::Convert(args) => args.run(),
     }
 }
 
@@ -126,9 +140,7 @@ fn check(files: &Files) -> anyhow::Result<ExitCode> {
     let findings = pair.findings();
     let findings: Vec<String> = findings.iter().map(Finding::to_string).collect();
     if files.json {
-        let list: Vec<_> = pair
-            .landmarks
-            .iter()
+        let list: Vec<_> = Landmark::marked(&pair.landmarks)
             .zip(&residuals)
             .map(|(l, r)| serde_json::json!({ "name": l.name, "left_out_residual": r }))
             .collect();
@@ -138,7 +150,8 @@ fn check(files: &Files) -> anyhow::Result<ExitCode> {
         let mut text = String::from(
             "distance from where the other landmarks expect each, in % of the target's longest side\n",
         );
-        for (k, (l, residual)) in pair.landmarks.iter().zip(&residuals).enumerate() {
+        let marked = Landmark::marked(&pair.landmarks);
+        for (k, (l, residual)) in marked.zip(&residuals).enumerate() {
             let _ = writeln!(
                 text,
                 "{:>8.2}  {}",
@@ -221,14 +234,69 @@ fn add_mirrored(args: &Output) -> anyhow::Result<ExitCode> {
         n.x,
         n.y,
         n.z,
-        added.len()
+        Landmark::marked(&added).count() + Curve::runs(&added).count()
     );
-    for l in &added {
+    for l in Landmark::marked(&added) {
         let _ = writeln!(text, "  {}", l.name.as_deref().unwrap_or_default());
+    }
+    for (curve, _) in Curve::runs(&added) {
+        let _ = writeln!(text, "  {}", curve.name.as_deref().unwrap_or_default());
     }
     say(&text)?;
     let all: Vec<Landmark> = pair.landmarks.iter().chain(&added).cloned().collect();
     args.write(&pair, &all)
+}
+
+impl Convert {
+    fn run(&self) -> anyhow::Result<ExitCode> {
+        let output = &self.output;
+        output.check()?;
+        let pair = self.read()?;
+        let Some(path) = &self.target_output else {
+            return output.write(&pair, &pair.landmarks);
+        };
+        check_writable(path)?;
+        let files = &output.files;
+        check_distinct(path, &[&files.source, &files.target, &files.landmarks])?;
+        ensure!(
+            *path != output.output,
+            "--target-output is the same file as -o"
+        );
+        let written = landmarks::write_wrap(&pair.landmarks, &pair.source, &pair.target)?;
+        warn_lost(&Lost::without_both(&pair.landmarks));
+        write_atomic(&output.output, written.source.as_bytes())?;
+        write_atomic(path, written.target.as_bytes())?;
+        say(&format!(
+            "wrote {} and {}\n",
+            output.output.display(),
+            path.display()
+        ))?;
+        Ok(ExitCode::SUCCESS)
+    }
+
+    fn read(&self) -> anyhow::Result<Pair> {
+        let files = &self.output.files;
+        let Some(target) = &self.target_points else {
+            return files.read();
+        };
+        let shapes = files.read_with(None)?;
+        let points = WrapPoints {
+            source: files.landmarks.as_path(),
+            target: target.as_path(),
+        };
+        let landmarks = landmarks::read_wrap(points, &shapes.source, &shapes.target)?;
+        Ok(Pair {
+            landmarks,
+            ..shapes
+        })
+    }
+}
+
+/// Says what a form of landmark file leaves out.
+fn warn_lost(lost: &[Lost]) {
+    let words = lost.iter();
+    let words = words.map(|lost| format!("{lost}: this form has no place for it; json does"));
+    warn(&words.collect::<Vec<_>>());
 }
 
 impl Output {
@@ -260,6 +328,7 @@ impl Output {
                 written.moved
             )]);
         }
+        warn_lost(&written.lost);
         write_atomic(&self.output, written.text.as_bytes())?;
         say(&format!("wrote {}\n", self.output.display()))?;
         Ok(ExitCode::SUCCESS)

@@ -1,6 +1,7 @@
 //! One file per command: its arguments and what it does.
 
 mod apply;
+mod bake;
 mod batch;
 mod bench;
 mod demo;
@@ -27,6 +28,8 @@ pub(crate) enum Command {
     Init(init::Args),
     /// Send other points through the map of a finished drape
     Apply(apply::Args),
+    /// Bake the target's colours, normals and relief into the texture coordinates of a draped mesh
+    Bake(bake::Args),
     /// Look at landmarks: check, suggest more, mirror, convert
     Landmarks(landmarks::Args),
     /// Judge a draped mesh
@@ -55,6 +58,7 @@ impl Command {
             Self::Transfer(args) => transfer::run(args),
             Self::Init(args) => init::run(args),
             Self::Apply(args) => apply::run(args),
+            Self::Bake(args) => bake::run(args),
             Self::Landmarks(args) => landmarks::run(args),
             Self::Metrics(args) => metrics::run(args),
             Self::Inspect(args) => inspect::run(args),

@@ -4,15 +4,16 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
+use anyhow::ensure;
 use mesh_core::io::write_atomic;
 use mesh_core::Positions;
 use mesh_draping::mesh_metrics::Report;
-use mesh_draping::{Outcome, Stages, Transfer};
+use mesh_draping::{Outcome, Pair, Stages, Transfer};
 use mesh_render::{Gallery, Image, Page, View, DISTANCE_AT_TOP};
 
 use crate::args::{
-    read_truth, say_beside, wrote, Inputs, MorphArgs, PartArgs, PipeArgs, SettingsArgs, ViewArgs,
-    WeldArgs,
+    bake, check_bakeable, check_maps, read_population, read_truth, say_beside, wrote, BakeArgs,
+    Inputs, MorphArgs, PartArgs, PipeArgs, SettingsArgs, ViewArgs, WeldArgs,
 };
 use crate::output::{check_distinct, check_writable, warn};
 use crate::profile::{self, ProfileArgs};
@@ -54,6 +55,19 @@ pub(crate) struct Args {
     /// Mesh whose vertices are where those of the result belong, to judge by
     #[arg(long, value_name = "FILE")]
     pub(super) truth: Option<PathBuf>,
+    /// Start from this shape of the source, the result of the frame before: no start is searched, and the run is a third
+    /// as long
+    #[arg(long, value_name = "FILE")]
+    pub(super) from: Option<PathBuf>,
+    /// Start from the shape that fits best of those that the results in this folder span: their mean and the modes in which
+    /// they differ, fitted to three landmarks or more. No start is searched, and the run is a third as long
+    #[arg(long, value_name = "FOLDER", conflicts_with = "from")]
+    pub(super) prior: Option<PathBuf>,
+    /// Make the result as symmetric as the source is
+    #[arg(long)]
+    pub(super) symmetric: bool,
+    #[command(flatten)]
+    pub(super) bake: BakeArgs,
     /// Save the map, for `drape apply`
     #[arg(long, value_name = "WARP")]
     pub(super) warp: Option<PathBuf>,
@@ -71,6 +85,9 @@ pub(crate) struct Args {
 const REPORT_PICTURE: usize = 440;
 /// Pixels along the side of a picture in a PNG file.
 const PNG_PICTURE: usize = 420;
+
+/// Landmarks without which a population does not find a target.
+const LEAST_FOR_PRIOR: usize = 3;
 
 pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let figures = drape_files(args)?.figures();
@@ -96,10 +113,9 @@ pub(super) fn drape_files(args: &Args) -> anyhow::Result<Done<'_>> {
     };
     let mut pair = stages.time("reading", || inputs.read())?;
     pair.source = pair.source.with_morphs(args.morphs.morphs.into());
-    let truth = args.truth.as_deref();
-    let truth = truth
-        .map(|path| read_truth(path, &pair.source))
-        .transpose()?;
+    let truth = read_shape(args.truth.as_deref(), &pair)?;
+    let start = stages.time("start", || start(args, &pair))?;
+    check_bakeable(&args.bake.maps(), &pair.source, &args.target)?;
     let mut warnings = words::about_inputs(&pair);
     if let Some(file) = pair.source.file() {
         warnings.extend(
@@ -117,12 +133,18 @@ pub(super) fn drape_files(args: &Args) -> anyhow::Result<Done<'_>> {
     if let Some(truth) = truth.clone() {
         transfer = transfer.with_truth(truth);
     }
+    if args.symmetric {
+        transfer = transfer.symmetric();
+    }
+    if let Some(start) = start {
+        transfer = transfer.with_start(start);
+    }
     let mut outcome = drape(transfer)?;
     let notes: Vec<String> = words::notes(&outcome.notes).collect();
     warn(&notes);
     warnings.extend(notes);
     let mut stages = std::mem::take(&mut outcome.stages);
-    let done = Done {
+    let mut done = Done {
         args,
         truth,
         warnings,
@@ -131,8 +153,30 @@ pub(super) fn drape_files(args: &Args) -> anyhow::Result<Done<'_>> {
         outcome,
     };
     stages.time("writing", || done.write())?;
+    let baked = stages.time("baking", || done.bake())?;
+    warn(&baked);
+    done.warnings.extend(baked);
     done.tell(&watch, &stages)?;
     Ok(done)
+}
+
+/// The shape to start from, where one is given.
+fn start(args: &Args, pair: &Pair) -> anyhow::Result<Option<Positions>> {
+    if let Some(folder) = &args.prior {
+        let followed = pair.landmarks.iter().filter(|l| l.is_followed());
+        ensure!(
+            followed.count() >= LEAST_FOR_PRIOR,
+            "--prior needs {LEAST_FOR_PRIOR} landmarks or more to find where the target stands"
+        );
+        let population = read_population(folder, &pair.source)?;
+        return Ok(Some(population.fit(pair)));
+    }
+    read_shape(args.from.as_deref(), pair)
+}
+
+/// A shape of the source in a file, where one is given.
+fn read_shape(path: Option<&Path>, pair: &Pair) -> anyhow::Result<Option<Positions>> {
+    path.map(|path| read_truth(path, &pair.source)).transpose()
 }
 
 /// Drapes and shows it.
@@ -154,6 +198,7 @@ fn check_outputs(args: &Args) -> anyhow::Result<()> {
         Some(&args.target),
         args.landmarks.as_ref(),
         args.truth.as_ref(),
+        args.from.as_ref(),
     ]
     .into_iter()
     .flatten()
@@ -165,7 +210,7 @@ fn check_outputs(args: &Args) -> anyhow::Result<()> {
         check_writable(path)?;
         check_distinct(path, &inputs)?;
     }
-    Ok(())
+    check_maps(&args.bake.maps(), &args.target, &inputs)
 }
 
 /// A finished run and what it was asked for.
@@ -197,6 +242,14 @@ impl Done<'_> {
         Ok(())
     }
 
+    /// Bakes the maps that were asked for; what is worth knowing about them.
+    fn bake(&self) -> anyhow::Result<Vec<String>> {
+        let Self { args, outcome, .. } = self;
+        let (source, target) = (&outcome.pair.source, &outcome.pair.target);
+        let maps = args.bake.maps();
+        bake(&maps, (source, &outcome.draped), target, &args.target)
+    }
+
     fn gallery(&self, size: usize) -> anyhow::Result<Gallery<'_>> {
         let (pair, initial) = (&self.outcome.pair, &self.outcome.initial);
         Ok(Gallery::new(pair, initial, self.args.view.up, size)?)
@@ -213,7 +266,7 @@ impl Done<'_> {
     /// What the judge says of the initial deformation and of the result.
     pub(super) fn reports(&self) -> anyhow::Result<[Report; 2]> {
         let run = &self.outcome;
-        let initial = run.pair.judge(&run.initial, self.truth.as_ref())?;
+        let initial = run.pair.judge(&run.by_landmarks, self.truth.as_ref())?;
         Ok([initial, run.report.clone()])
     }
 
@@ -227,7 +280,7 @@ impl Done<'_> {
             Image::row(&[
                 gallery.source(view),
                 gallery.target(view),
-                gallery.initial(&run.initial, view),
+                gallery.initial(&run.by_landmarks, view),
                 gallery.result(&run.draped, view),
                 gallery.marked_heat(&run.draped, distances, DISTANCE_AT_TOP, &marks, view),
             ])
@@ -287,7 +340,9 @@ impl Done<'_> {
             args.render.as_ref(),
             args.report.as_ref(),
         ];
-        let written = outputs.into_iter().flatten().map(|path| wrote(path));
+        let maps = args.bake.maps();
+        let written = outputs.into_iter().flatten().map(PathBuf::as_path);
+        let written = written.chain(maps.paths()).map(wrote);
         let written: String = written.collect();
         let seams = words::seams(&run.pair.source);
         let seams = seams.map_or_else(String::new, |words| format!("{words}\n"));

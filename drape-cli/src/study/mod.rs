@@ -10,7 +10,7 @@ use std::path::Path;
 
 use mesh_core::io::write_atomic;
 
-use crate::suite::{Method, RunList};
+use crate::suite::{Method, RunList, INITIAL};
 
 pub(crate) use report::Report;
 
@@ -21,6 +21,10 @@ pub(crate) enum Study {
     Paper,
     /// What progressive encoding buys, by the angle of limbs and the number of landmarks, in short runs
     Encoding,
+    /// Vertices, the network, and the network that leads vertices, on creatures in hard poses
+    Network,
+    /// The default and the initial deformation on creatures over the whole dial, one thing turned at a time
+    Dial,
 }
 
 /// Settings that are compared.
@@ -63,6 +67,19 @@ const START: Theme = Theme {
     ],
 };
 
+const NETWORK: Theme = Theme {
+    title: "Vertices, network, both",
+    variants: &[
+        ("vertices", "study-vertices"),
+        (
+            "vertices, half as many iterations more",
+            "study-vertices-longer",
+        ),
+        ("network", "network"),
+        ("network, then vertices", "standard"),
+    ],
+};
+
 /// Settings over those of a preset for runs so short that budget decides.
 const SHORT: &str = "initial = \"standard\"\n[sampling]\nn_samples = 1000\nmax_samples = 1000\n\
     [[stages]]\nn_iterations = 100\n[[stages]]\nn_iterations = 50\n";
@@ -73,6 +90,8 @@ impl Study {
         match self {
             Self::Paper => "paper",
             Self::Encoding => "encoding",
+            Self::Network => "network",
+            Self::Dial => "dial",
         }
     }
 
@@ -80,6 +99,8 @@ impl Study {
         match self {
             Self::Paper => &[ENCODING, STRUCTURE, LAMBDA, START],
             Self::Encoding => &[ENCODING],
+            Self::Network => &[NETWORK],
+            Self::Dial => &[],
         }
     }
 
@@ -87,10 +108,13 @@ impl Study {
     fn methods(self, folder: &Path) -> anyhow::Result<Vec<Method>> {
         let variants = self.themes().iter().flat_map(|theme| theme.variants);
         let mut presets: Vec<&str> = variants.map(|(_, preset)| *preset).collect();
+        if self == Self::Dial {
+            presets = vec![INITIAL, "standard"];
+        }
         presets.sort_unstable();
         presets.dedup();
         let method = |preset: &str| match self {
-            Self::Paper => Ok(Method::Preset(preset.to_owned())),
+            Self::Paper | Self::Network | Self::Dial => Ok(Method::Preset(preset.to_owned())),
             Self::Encoding => {
                 let path = folder.join(format!("{preset}.toml"));
                 let text = format!("preset = \"{preset}\"\n{SHORT}");
@@ -130,8 +154,11 @@ mod tests {
 
     #[test]
     fn every_variant_is_a_preset_and_no_study_is_left_out() {
-        let themes = Study::Paper.themes();
-        let variants = || themes.iter().flat_map(|theme| theme.variants);
+        let all = [Study::Paper, Study::Network];
+        let variants = || {
+            let themes = all.iter().flat_map(|study| study.themes());
+            themes.flat_map(|theme| theme.variants)
+        };
         for (_, preset) in variants() {
             assert!(Preset::named(preset).is_ok(), "{preset}");
         }
@@ -142,7 +169,8 @@ mod tests {
                 study.name
             );
         }
-        assert!(themes.iter().all(|theme| theme.variants[0].1 == "study"));
+        let themes = Study::Paper.themes().iter();
+        assert!(themes.clone().all(|theme| theme.variants[0].1 == "study"));
     }
 
     #[test]

@@ -46,8 +46,10 @@ impl Report<'_> {
         let mut text: String = themes
             .map(|t| tables::theme(t, &pairs, self.rows))
             .collect();
-        if self.study == Study::Paper {
-            text += &tables::table_1(self.rows);
+        match self.study {
+            Study::Paper => text += &tables::table_1(self.rows),
+            Study::Dial => text += &tables::dial(&pairs::rows_of_cases(self.study), self.rows),
+            Study::Encoding | Study::Network => {}
         }
         text
     }

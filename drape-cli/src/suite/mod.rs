@@ -8,6 +8,7 @@ mod page;
 mod row;
 mod run_list;
 mod runner;
+mod shard;
 mod summary;
 
 use std::path::{Path, PathBuf};
@@ -21,15 +22,21 @@ pub(crate) use page::{origin, Marks, Page};
 pub(crate) use row::Row;
 pub(crate) use run_list::RunList;
 pub(crate) use runner::Pool;
+pub(crate) use shard::Shard;
 
 /// The preset that stands for the initial deformation alone.
 pub(crate) const INITIAL: &str = "initial";
+
+/// The file of finished rows.
+const STORE: &str = "results.jsonl";
 
 /// One run to be done.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Task {
     pub(crate) pair: Pair,
     pub(crate) method: Method,
+    /// The result that the run starts from: the frame before.
+    pub(crate) from: Option<PathBuf>,
     /// More options of the command line.
     pub(crate) options: Vec<String>,
     pub(crate) seed: u64,
@@ -77,12 +84,10 @@ pub(crate) fn stem(path: &Path) -> String {
         .into_owned()
 }
 
-/// Runs what is not done yet and writes `results.csv`, `results.json` and `index.html` beside `results.jsonl` in
-/// `folder`; gives the rows of all tasks.
+/// Runs what is not done yet, by this program or shards of it, and writes `results.csv`, `results.json` and `index.html`
+/// beside `results.jsonl` in `folder`; gives the rows of all tasks.
 pub(crate) fn run(tasks: &[Task], folder: &Path, pool: &Pool) -> anyhow::Result<Vec<Row>> {
-    std::fs::create_dir_all(folder)
-        .with_context(|| format!("{}: the folder cannot be made", folder.display()))?;
-    let rows = pool.run(tasks, &folder.join("results.jsonl"))?;
+    let rows = run_into(&folder.join(STORE), tasks, folder, pool)?;
     write_atomic(folder.join("results.csv"), summary::csv(&rows).as_bytes())?;
     write_atomic(
         folder.join("results.json"),
@@ -93,4 +98,26 @@ pub(crate) fn run(tasks: &[Task], folder: &Path, pool: &Pool) -> anyhow::Result<
         summary::html(&rows, folder).as_bytes(),
     )?;
     Ok(rows)
+}
+
+/// Runs what is not done yet of a shard's tasks; the tables are written by [`run`], when all shards are done.
+pub(crate) fn run_shard(
+    shard: Shard,
+    tasks: &[Task],
+    folder: &Path,
+    pool: &Pool,
+) -> anyhow::Result<Vec<Row>> {
+    run_into(&shard.store(folder), tasks, folder, pool)
+}
+
+/// Runs what no file of rows in `folder` has; new rows go to `store`.
+fn run_into(store: &Path, tasks: &[Task], folder: &Path, pool: &Pool) -> anyhow::Result<Vec<Row>> {
+    let place = store.parent().unwrap_or(folder);
+    std::fs::create_dir_all(place)
+        .with_context(|| format!("{}: the folder cannot be made", place.display()))?;
+    let mut known = Vec::new();
+    for rows in shard::stores(folder) {
+        known.extend(row::load(&rows)?);
+    }
+    pool.run(tasks, &known, store)
 }

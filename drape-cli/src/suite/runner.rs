@@ -1,7 +1,6 @@
 //! Runs tasks in processes of their own, several at a time.
 
 use std::path::{Path, PathBuf};
-use std::process::Command;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
@@ -9,14 +8,15 @@ use std::time::{Duration, SystemTime, UNIX_EPOCH};
 use anyhow::{anyhow, Context as _};
 use serde::Deserialize;
 
-use super::row::{append, load, Row};
+use super::row::{append, Row};
 use super::{Method, Task, INITIAL};
+use crate::Program;
 
 /// How to run.
 #[derive(Clone, Debug)]
 pub(crate) struct Pool {
     /// This very program.
-    program: PathBuf,
+    program: Program,
     /// Runs at a time.
     jobs: usize,
     /// Threads for each run, where limited.
@@ -34,18 +34,22 @@ struct Outcome {
 impl Pool {
     pub(crate) fn new(jobs: usize) -> anyhow::Result<Self> {
         Ok(Self {
-            program: std::env::current_exe().context("cannot find this program to run it again")?,
+            program: Program::present().context("cannot find this program to run it again")?,
             jobs: jobs.max(1),
             threads: (jobs > 1).then(|| (rayon::current_num_threads() / jobs).max(1)),
         })
     }
 
-    /// The rows of all tasks, in order: those in `store` that are still right, the others run now and added to it.
-    pub(super) fn run(&self, tasks: &[Task], store: &Path) -> anyhow::Result<Vec<Row>> {
-        let known = load(store)?;
+    /// The rows of all tasks, in order: those that are known and still right, the others run now and added to `store`.
+    pub(super) fn run(
+        &self,
+        tasks: &[Task],
+        known: &[Row],
+        store: &Path,
+    ) -> anyhow::Result<Vec<Row>> {
         let done: Vec<Option<Row>> = tasks
             .iter()
-            .map(|task| self.still_right(task, &known))
+            .map(|task| self.still_right(task, known))
             .collect();
         let n_left = done.iter().filter(|row| row.is_none()).count();
         eprintln!("{} runs, {} done before", tasks.len(), tasks.len() - n_left);
@@ -94,7 +98,7 @@ impl Pool {
                 .is_ok_and(|t| t <= finished)
         };
         let is_right =
-            row.error.is_none() && task.inputs().all(is_older) && is_older(&self.program);
+            row.error.is_none() && task.inputs().all(is_older) && is_older(&self.program.file);
         (is_right && task.output.is_file() && task.picture.is_file()).then(|| row.clone())
     }
 
@@ -137,7 +141,7 @@ impl Pool {
     }
 
     fn child(&self, arguments: &[String]) -> anyhow::Result<Outcome> {
-        let mut command = Command::new(&self.program);
+        let mut command = self.program.command();
         if let Some(threads) = self.threads {
             command.arg("--threads").arg(threads.to_string());
         }
@@ -172,6 +176,9 @@ impl Pool {
         if let Some(truth) = &task.pair.truth {
             option("--truth", text(truth));
         }
+        if let Some(from) = &task.from {
+            option("--from", text(from));
+        }
         match &task.method {
             _ if is_initial => (),
             Method::Preset(name) => option("--preset", name.clone()),
@@ -201,6 +208,7 @@ impl Task {
             pair.truth.as_ref(),
             pair.judge.as_ref(),
             config,
+            self.from.as_ref(),
         ];
         [Some(&pair.source), Some(&pair.target)]
             .into_iter()

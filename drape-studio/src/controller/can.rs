@@ -8,6 +8,8 @@ use super::request::Command;
 
 /// Why nothing can be done without both shapes.
 pub(crate) const OPEN_FIRST: &str = "open a source and a target first";
+/// Why a shape is not brushed that another one will follow.
+const RESUME_FIRST: &str = "resume first: the drape has not taken what was changed";
 
 /// Where a drape stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -34,6 +36,8 @@ pub(crate) enum Action {
     Clear,
     /// To read landmarks from a file.
     OpenLandmarks,
+    /// To brush the result.
+    Brush,
     /// To save the result, the warp, the landmarks or the report.
     Export,
 }
@@ -73,7 +77,7 @@ impl Status {
 }
 
 impl Action {
-    const ALL: [(&'static str, Self); 12] = [
+    const ALL: [(&'static str, Self); 13] = [
         ("drape", Self::Command(Command::Drape)),
         ("pause", Self::Command(Command::Pause)),
         ("resume", Self::Command(Command::Resume)),
@@ -85,6 +89,7 @@ impl Action {
         ("redo", Self::Redo),
         ("clear", Self::Clear),
         ("open_landmarks", Self::OpenLandmarks),
+        ("brush", Self::Brush),
         ("export", Self::Export),
     ];
 }
@@ -98,6 +103,14 @@ impl Situation {
             Action::Redo => needs(self.has_redo, "there is nothing to redo"),
             Action::Clear => needs(self.has_landmarks, "there are no landmarks"),
             Action::OpenLandmarks | Action::Export => needs(self.has_inputs, OPEN_FIRST),
+            Action::Brush if self.is_pending => Some(RESUME_FIRST),
+            Action::Brush => needs(
+                matches!(
+                    self.run,
+                    Some(Status::Paused | Status::Stopped | Status::Finished)
+                ),
+                Status::explain(self.run),
+            ),
             Action::Command(_) if !self.has_inputs => Some(OPEN_FIRST),
             Action::Command(command) => needs(self.fits(command), Status::explain(self.run)),
         }
@@ -233,6 +246,16 @@ mod tests {
     }
 
     #[test]
+    fn what_stands_still_is_brushed() {
+        for run in STATUSES {
+            let stands = matches!(run, Some(Paused | Stopped | Finished));
+            let refusal = situation(run, false).refusal(Action::Brush);
+            assert_eq!(refusal.is_none(), stands, "{run:?}");
+            assert!(situation(run, true).refusal(Action::Brush).is_some());
+        }
+    }
+
+    #[test]
     fn what_throws_a_result_away_is_told() {
         for run in STATUSES {
             let expected: &[&str] = match run {
@@ -247,7 +270,7 @@ mod tests {
     #[test]
     fn pages_are_told_of_every_action() {
         let can = situation(Some(Paused), false).can();
-        assert_eq!(can.as_object().map(serde_json::Map::len), Some(12));
+        assert_eq!(can.as_object().map(serde_json::Map::len), Some(13));
         assert_eq!(
             (&can["resume"], &can["pause"]),
             (&json!(true), &json!(false))

@@ -8,8 +8,9 @@ use mesh_draping::{Draping, Preset};
 use super::can::{Action, Status, OPEN_FIRST};
 use super::{ActiveRun, Command, Controller, Inbox};
 use crate::checkpoint::{self, Checkpoint};
+use crate::logged_run::SavedRun;
 use crate::runner::{Order, Runner, RunnerParts, Update};
-use crate::session::{landmarks, Mark, RunLog};
+use crate::session::{Mark, RunLog};
 
 impl Controller {
     /// Does what drives the drape, if that fits it as it is.
@@ -18,6 +19,7 @@ impl Controller {
         self.situation().check(Action::Command(command))?;
         match command {
             Command::Drape => {
+                self.keep_result()?;
                 self.begin_paused()?;
                 self.order(Order::Go)?;
             }
@@ -38,6 +40,7 @@ impl Controller {
                 self.resume(Order::Go)?;
             }
             Command::Reset => {
+                self.keep_result()?;
                 self.leave_run();
                 self.broadcast.forget_drape();
                 self.ask_preview();
@@ -58,11 +61,12 @@ impl Controller {
             iteration: 0,
         };
         self.leave_run();
+        self.session.begin_strokes(Vec::new());
         self.broadcast.forget_drape();
         self.start_runner(log, None)
     }
 
-    fn start_runner(&mut self, log: RunLog, state: Option<neural_drape::DrapeState>) -> Result<()> {
+    pub(super) fn start_runner(&mut self, log: RunLog, saved: Option<SavedRun>) -> Result<()> {
         let displayed = self.displayed.clone().context(OPEN_FIRST)?;
         let n_more = Draping::n_more(&Preset::from_toml(&log.settings)?);
         self.n_runs += 1;
@@ -73,7 +77,7 @@ impl Controller {
             figures: Arc::clone(&self.figures),
             checkpoint: self.checkpoint_path(),
             log: log.clone(),
-            state,
+            saved,
         };
         self.session.run = Some(log.clone());
         self.run = Some(ActiveRun {
@@ -89,7 +93,7 @@ impl Controller {
         Ok(())
     }
 
-    fn order(&mut self, order: Order) -> Result<()> {
+    pub(super) fn order(&mut self, order: Order) -> Result<()> {
         let run = self.run.as_ref().context("there is no drape")?;
         run.runner.order(order);
         Ok(())
@@ -134,6 +138,7 @@ impl Controller {
     pub(super) fn leave_run(&mut self) {
         if self.run.take().is_some() {
             self.session.run = None;
+            self.session.begin_strokes(Vec::new());
             // Where it cannot be removed, the session says that there is no drape.
             drop(std::fs::remove_file(self.checkpoint_path()));
         }
@@ -146,16 +151,16 @@ impl Controller {
             return;
         }
         let path = self.checkpoint_path();
-        let (log, state) = match checkpoint::read(&path) {
-            Ok(Checkpoint { history, state }) => {
+        let (log, saved) = match checkpoint::read(&path) {
+            Ok(Checkpoint { history, saved }) => {
                 self.broadcast.set_curves(history.curves);
-                (Some(history.log), Some(state))
+                (Some(history.log), Some(saved))
             }
             // A session that came without its drape: it is done again.
             Err(_) => (self.session.run.clone(), None),
         };
         if let Some(log) = log {
-            if let Err(error) = self.start_runner(log, state) {
+            if let Err(error) = self.start_runner(log, saved) {
                 self.session.run = None;
                 self.notice = Some(format!("the drape in progress is lost: {error:#}"));
             }
@@ -182,7 +187,11 @@ impl Controller {
             Update::Changed(log) => run.log = log,
             Update::Failed(error) => (run.status, run.error) = (Status::Failed, Some(error)),
         }
+        let is_alive = run.status != Status::Failed;
         self.session.run = Some(run.log.clone());
+        if is_alive {
+            self.order_strokes();
+        }
         self.changed();
     }
 
@@ -212,9 +221,8 @@ impl Controller {
             return false;
         };
         let places = |marks: &[Mark]| {
-            let unnamed = landmarks(marks)
-                .into_iter()
-                .map(|l| (l.source, l.target, l.kind));
+            let complete = marks.iter().filter(|mark| mark.is_complete());
+            let unnamed = complete.map(Mark::unnamed);
             unnamed.collect::<Vec<_>>()
         };
         places(run.log.last_landmarks()) != places(&self.session.document.marks)
@@ -222,6 +230,6 @@ impl Controller {
 
     fn complete_marks(&self) -> Vec<Mark> {
         let marks = self.session.document.marks.iter();
-        marks.filter(|m| m.landmark().is_some()).cloned().collect()
+        marks.filter(|m| m.is_complete()).cloned().collect()
     }
 }

@@ -1,18 +1,24 @@
 //! The one place that changes the session: requests and news come in, the newest state goes out.
 
+mod brush;
 mod can;
 mod commands;
+mod drawing;
 mod edits;
+mod history;
+mod paint;
 mod parts;
 mod places;
 mod queries;
 mod request;
+mod scans;
 mod state;
 
 pub(crate) use can::OPEN_FIRST;
 use can::{Situation, Status};
 pub(crate) use request::Request;
 use request::{Command, Edit, Query, Shape};
+pub(crate) use scans::OpenedSession;
 
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -30,10 +36,11 @@ use crate::broadcast::{Broadcast, Provenance, ShownKind, ShownShape};
 use crate::checkpoint;
 use crate::displayed::{DisplayedPair, DisplayedSource, DisplayedTarget};
 use crate::figures::{judge, FiguresJob};
+use crate::kept_files::KeptFiles;
 use crate::latest::Latest;
 use crate::preview::{live_preview, preview, PreviewJob, PreviewOf};
 use crate::runner::{Runner, Update};
-use crate::session::{Document, InputRecord, RunLog, Session};
+use crate::session::{Document, InputRecord, Lines, RunLog, Session};
 use crate::shapes::Shapes;
 
 /// Edits are on disk after this long.
@@ -50,6 +57,8 @@ pub(crate) enum Inbox {
     Previewed(u32, Result<Vec<String>, String>),
     /// The inner surfaces of these are known.
     LookedInside(Shapes),
+    /// A kept result is drawn and judged.
+    Examined(u32, Value),
 }
 
 /// A file that was opened.
@@ -57,6 +66,11 @@ pub(crate) enum Opened {
     Source(Arc<DisplayedSource>, InputRecord),
     Target(Arc<DisplayedTarget>, InputRecord),
     Landmarks(Vec<Landmark>),
+    /// A file that a mesh names: there is nothing to show of it alone.
+    Beside,
+    /// A target for later.
+    Queued(InputRecord),
+    Session(Box<OpenedSession>),
 }
 
 /// Everything that an export needs.
@@ -109,6 +123,8 @@ pub(crate) struct Controller {
     inbox: Sender<Inbox>,
     session: Session,
     session_path: PathBuf,
+    /// Where kept results and other sessions are.
+    files: KeptFiles,
     source: Option<Arc<DisplayedSource>>,
     target: Option<Arc<DisplayedTarget>>,
     /// The two, where both are open.
@@ -127,6 +143,12 @@ pub(crate) struct Controller {
     notice: Option<String>,
     /// The document before the drag that goes on.
     dragged_from: Option<Document>,
+    /// The curve that is being drawn.
+    drawing: Option<Lines>,
+    /// The stroke of the brush that goes on.
+    stroke: Option<paint::Stroke>,
+    /// The stroke on the result that goes on.
+    brushing: Option<brush::Brushing>,
     /// The shape shown under this number, to pick on.
     shown_bvh: Option<(u32, TriangleBvh)>,
     revision: u64,
@@ -149,6 +171,7 @@ impl Controller {
             inbox: inbox.clone(),
             broadcast: parts.broadcast,
             session: parts.session,
+            files: KeptFiles::beside(&parts.session_path),
             session_path: parts.session_path,
             displayed: both(parts.source.as_ref(), parts.target.as_ref()),
             source: parts.source,
@@ -162,6 +185,9 @@ impl Controller {
             preview_error: None,
             notice: parts.notice,
             dragged_from: None,
+            drawing: None,
+            stroke: None,
+            brushing: None,
             shown_bvh: None,
             revision: 0,
             unsaved_since: Some(Instant::now()),
@@ -206,7 +232,13 @@ impl Controller {
                 let answer = self.open(opened).map_err(|e| format!("{e:#}"));
                 drop(reply.send(answer));
             }
-            Inbox::Snapshot(reply) => drop(reply.send(self.snapshot())),
+            Inbox::Snapshot(reply) => {
+                if self.are_strokes_pending() {
+                    // Where it does not come to rest, what is shown is taken.
+                    drop(self.bring_to_rest());
+                }
+                drop(reply.send(self.snapshot()));
+            }
             Inbox::Update(number, news) => self.hear(number, news),
             Inbox::Previewed(number, outcome) if number == self.n_previews => {
                 match outcome {
@@ -217,6 +249,7 @@ impl Controller {
             }
             Inbox::Previewed(..) => {}
             Inbox::LookedInside(shapes) => self.looked_inside(&shapes),
+            Inbox::Examined(id, figures) => self.examined(id, figures),
         }
     }
 
@@ -225,6 +258,7 @@ impl Controller {
         match request {
             Request::Query(query) => Ok(self.look_up(&query)),
             Request::Edit(edit) => self.make(edit),
+            Request::Kept(kept) => self.handle_kept(kept),
             Request::Command(command) => self.drive(command).map(|()| Value::Null),
         }
     }
@@ -275,7 +309,7 @@ impl Controller {
                 PreviewOf::Adjusted(Arc::clone(&f.positions))
             }),
         };
-        if !is_pending {
+        if !is_pending && !self.are_strokes_pending() {
             self.show_drape_again();
         }
         self.newest_preview.store(self.n_previews, Ordering::SeqCst);
@@ -284,7 +318,6 @@ impl Controller {
             displayed,
             method: self.preset.initial,
             landmarks: self.landmarks(),
-            numbers: self.numbers(),
             shown,
             newest: Arc::clone(&self.newest_preview),
             figures: Arc::clone(&self.figures),
@@ -303,6 +336,7 @@ impl Controller {
             self.figures.ask(FiguresJob {
                 displayed,
                 positions: Arc::clone(&shown.positions),
+                counterparts: shown.counterparts(),
                 landmarks: self.landmarks(),
                 iteration: Some(shown.iteration()),
                 is_resting: true,
@@ -311,14 +345,10 @@ impl Controller {
     }
 
     fn landmarks(&self) -> Vec<Landmark> {
-        crate::session::landmarks(&self.session.document.marks)
-    }
-
-    /// The numbers that the markers of these landmarks have: all are counted, also those that are half made.
-    fn numbers(&self) -> Vec<usize> {
-        let marks = self.session.document.marks.iter().zip(1..);
-        let complete = marks.filter(|(mark, _)| mark.landmark().is_some());
-        complete.map(|(_, number)| number).collect()
+        let source = self.source.as_ref();
+        source.map_or_else(Vec::new, |source| {
+            crate::session::landmarks(&self.session.document.marks, &source.source)
+        })
     }
 
     fn snapshot(&self) -> Snapshot {
@@ -339,37 +369,6 @@ impl Controller {
             displayed: self.displayed.clone(),
             shown: shown.or(preview),
         }
-    }
-
-    fn open(&mut self, opened: Opened) -> anyhow::Result<()> {
-        match opened {
-            Opened::Source(source, record) => {
-                self.leave_run();
-                self.session.forget_places();
-                self.source = Some(source);
-                self.session.source = Some(record);
-            }
-            Opened::Target(target, record) => {
-                self.leave_run();
-                self.session.forget_places();
-                self.target = Some(target);
-                self.session.target = Some(record);
-            }
-            Opened::Landmarks(landmarks) => {
-                self.adopt(&landmarks)?;
-                return Ok(());
-            }
-        }
-        self.dragged_from = None;
-        self.shown_bvh = None;
-        self.warnings.clear();
-        self.notice = None;
-        self.displayed = both(self.source.as_ref(), self.target.as_ref());
-        self.broadcast.set_displayed(self.displayed.clone());
-        self.look_inside();
-        self.ask_preview();
-        self.changed();
-        Ok(())
     }
 
     fn checkpoint_path(&self) -> PathBuf {

@@ -1,13 +1,18 @@
 //! Places on the shapes: marked, mirrored, dragged.
 
-use anyhow::{ensure, Result};
-use mesh_core::Point3;
+use anyhow::{bail, ensure, Result};
+use mesh_core::{MeshPoint, Point3, VertexId};
 use mesh_draping::landmarks::{counterpart, MirrorPlanes, Plane};
+use mesh_draping::{SnapPoints, SNAP_REACH};
 use serde_json::{json, Value};
 
+use super::request::Snap;
 use super::{Controller, Shape};
 use crate::pick::{first_hit, Ray};
-use crate::session::{Mark, MarkKind, SourcePlace, MAX_MARKS};
+use crate::session::{numbers, Mark, SourcePlace, MAX_MARKS};
+
+/// Marks nearer to each other than this, in longest sides, are at one place.
+const SAME_PLACE: f64 = 0.002;
 
 /// A place on either shape.
 #[derive(Clone, Copy)]
@@ -41,13 +46,41 @@ impl Controller {
         }
     }
 
+    /// The place that a ray meets first, or that it snaps to.
+    pub(super) fn pick_snapped(
+        &mut self,
+        shape: Shape,
+        ray: &Ray,
+        snap: Option<Snap>,
+    ) -> Option<Place> {
+        let place = self.pick(shape, ray)?;
+        let Some(snap) = snap else {
+            return Some(place);
+        };
+        match place {
+            Place::Source(place) => {
+                let source = self.source.as_ref()?;
+                let at = place.mesh_point().position(source.source.rest());
+                let row = snap.vertex(source.snap_points(), &at, source.frame.scale)?;
+                let vertex = MeshPoint::vertex(VertexId::new(row));
+                Some(Place::Source(SourcePlace::of(&vertex)))
+            }
+            Place::Target(at) => {
+                let target = self.target.as_ref()?;
+                let points = target.snap_points();
+                let row = snap.vertex(points, &at, target.frame.scale)?;
+                points.point(row).map(Place::Target)
+            }
+        }
+    }
+
     /// Completes the newest landmark, moves its only side, or begins another one.
-    pub(super) fn place(&mut self, shape: Shape, ray: &Ray) -> Result<Value> {
-        let Some(place) = self.pick(shape, ray) else {
+    pub(super) fn place(&mut self, shape: Shape, ray: &Ray, snap: Option<Snap>) -> Result<Value> {
+        let Some(place) = self.pick_snapped(shape, ray, snap) else {
             return Ok(Value::Null);
         };
-        let half = self.session.document.marks.iter();
-        let half = half.rev().find(|m| m.landmark().is_none()).map(|m| m.id);
+        let half = self.half_made(&place);
+        self.check_single(&place, half)?;
         let n_marks = self.session.document.marks.len();
         ensure!(
             half.is_some() || n_marks < MAX_MARKS,
@@ -57,13 +90,7 @@ impl Controller {
         let twin_id = self.session.fresh_id();
         let mut document = self.session.document.clone();
         if half.is_none() {
-            document.marks.push(Mark {
-                id,
-                name: String::new(),
-                source: None,
-                target: None,
-                kind: MarkKind::Soft,
-            });
+            document.marks.push(Mark::empty(id));
         }
         let mut twin = None;
         if let Some(mark) = document.marks.iter_mut().find(|m| m.id == id) {
@@ -71,10 +98,73 @@ impl Controller {
             let axes = document.mirror.filter(|_| n_marks < MAX_MARKS);
             twin = axes.and_then(|axes| self.twin(mark, axes, twin_id));
         }
-        document.marks.extend(twin);
+        if let Some(twin) = twin {
+            self.add_twin(&mut document.marks, twin);
+        }
         self.session.edit(|d| *d = document);
         self.edited();
         Ok(json!({ "landmark": id }))
+    }
+
+    /// The mark that a place belongs to: the first that waits for one on this shape, else the only one that is half made,
+    /// whose side moves; none where another is begun.
+    fn half_made(&self, place: &Place) -> Option<u32> {
+        let half = || {
+            let marks = self.session.document.marks.iter();
+            marks.filter(|m| !m.is_complete())
+        };
+        let waiting = half().find(|mark| place.is_missing_of(mark));
+        let only = half().next().filter(|_| half().count() == 1);
+        waiting.or(only).map(|mark| mark.id)
+    }
+
+    /// Refuses a second mark at one place.
+    fn check_single(&self, place: &Place, own: Option<u32>) -> Result<()> {
+        let marks = &self.session.document.marks;
+        let others = numbers(marks).zip(marks).filter(|(_, m)| Some(m.id) != own);
+        for (number, mark) in others {
+            if self.is_same(place, mark) {
+                let number = number.map_or("one half made".to_owned(), |n| n.to_string());
+                bail!("landmark {number} is at this place already; drag it to move it");
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether a mark is at a place already.
+    fn is_same(&self, place: &Place, mark: &Mark) -> bool {
+        match place {
+            Place::Target(point) => {
+                let side = self.target.as_ref().map_or(0.0, |t| t.frame.scale);
+                let there = mark.target.map(Point3::from);
+                there.is_some_and(|there| (there - point).norm() < SAME_PLACE * side)
+            }
+            Place::Source(place) => self.source.as_ref().is_some_and(|source| {
+                let at = |p: &SourcePlace| p.mesh_point().position(source.source.rest());
+                let there = mark.source.as_ref().map(at);
+                let side = source.frame.scale;
+                there.is_some_and(|there| (there - at(place)).norm() < SAME_PLACE * side)
+            }),
+        }
+    }
+
+    /// Adds a mirror image; where a mark is there already, that one gets what it lacks.
+    fn add_twin(&self, marks: &mut Vec<Mark>, twin: Mark) {
+        let sides = [
+            twin.source.map(Place::Source),
+            twin.target.map(|p| Place::Target(p.into())),
+        ];
+        let there = marks.iter_mut().find(|mark| {
+            let mut sides = sides.iter().flatten();
+            sides.any(|side| self.is_same(side, mark))
+        });
+        match there {
+            None => marks.push(twin),
+            Some(mark) => {
+                mark.source = mark.source.or(twin.source);
+                mark.target = mark.target.or(twin.target);
+            }
+        }
     }
 
     /// The mirror image of a landmark that is complete, unless it lies on the mirror.
@@ -89,15 +179,10 @@ impl Controller {
         Some(Mark::of(id, &twin))
     }
 
-    pub(super) fn drag(
-        &mut self,
-        id: u32,
-        shape: Shape,
-        ray: Option<&Ray>,
-        done: bool,
-    ) -> Result<()> {
+    /// Moves a landmark to a place, if there is one.
+    pub(super) fn drag(&mut self, id: u32, to: Option<Place>, done: bool) -> Result<()> {
         self.find(id)?;
-        if let Some(place) = ray.and_then(|ray| self.pick(shape, ray)) {
+        if let Some(place) = to {
             if self.dragged_from.is_none() {
                 self.dragged_from = Some(self.session.document.clone());
             }
@@ -112,8 +197,11 @@ impl Controller {
         Ok(())
     }
 
-    /// What was dragged becomes one edit.
+    /// What was dragged or painted becomes one edit.
     pub(super) fn finish_drag(&mut self) {
+        // Whoever painted has been told by then why a stroke cannot be; it is forgotten.
+        drop(self.finish_stroke());
+        self.finish_brushing();
         if let Some(before) = self.dragged_from.take() {
             if before != self.session.document {
                 self.session.remember(before);
@@ -122,7 +210,25 @@ impl Controller {
     }
 }
 
+impl Snap {
+    /// The vertex that a place of a shape snaps to; `side` is the longest side of its box.
+    fn vertex(self, points: &SnapPoints, at: &Point3, side: f64) -> Option<usize> {
+        match self {
+            Self::Vertex => points.nearest(at),
+            Self::Curvature => points.most_curved(at, SNAP_REACH * side),
+        }
+    }
+}
+
 impl Place {
+    /// Whether a mark has no place on this shape.
+    fn is_missing_of(&self, mark: &Mark) -> bool {
+        match self {
+            Self::Source(_) => mark.source.is_none(),
+            Self::Target(_) => mark.target.is_none(),
+        }
+    }
+
     fn put(self, mark: &mut Mark) {
         match self {
             Self::Source(place) => mark.source = Some(place),

@@ -3,6 +3,7 @@
 use serde_json::{json, Value};
 
 use super::places::Place;
+use super::request::Layer;
 use super::{Controller, Query};
 
 impl Controller {
@@ -14,6 +15,8 @@ impl Controller {
                 self.describe(place)
             }
             Query::PartTriangles { name } => self.part_triangles(name),
+            Query::Weights => self.painted_state(Layer::Weights),
+            Query::Rigid => self.painted_state(Layer::Rigid),
             Query::Curves => json!(self.broadcast.curves()),
         }
     }

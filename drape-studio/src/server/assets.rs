@@ -10,7 +10,7 @@ const SCRIPT: &str = "text/javascript; charset=utf-8";
 const SVG: &str = "image/svg+xml";
 
 /// Name, type and text of every file.
-const FILES: [(&str, &str, &str); 20] = [
+const FILES: [(&str, &str, &str); 35] = [
     ("index.html", HTML, include_str!("../../assets/index.html")),
     ("style.css", CSS, include_str!("../../assets/style.css")),
     ("icon.svg", SVG, include_str!("../../assets/icon.svg")),
@@ -41,6 +41,33 @@ const FILES: [(&str, &str, &str); 20] = [
         SCRIPT,
         include_str!("../../assets/painter.js"),
     ),
+    (
+        "colours.js",
+        SCRIPT,
+        include_str!("../../assets/colours.js"),
+    ),
+    ("brush.js", SCRIPT, include_str!("../../assets/brush.js")),
+    (
+        "weights.js",
+        SCRIPT,
+        include_str!("../../assets/weights.js"),
+    ),
+    ("curves.js", SCRIPT, include_str!("../../assets/curves.js")),
+    ("cursor.js", SCRIPT, include_str!("../../assets/cursor.js")),
+    ("files.js", SCRIPT, include_str!("../../assets/files.js")),
+    ("paint.js", SCRIPT, include_str!("../../assets/paint.js")),
+    ("loupe.js", SCRIPT, include_str!("../../assets/loupe.js")),
+    ("ring.js", SCRIPT, include_str!("../../assets/ring.js")),
+    ("sculpt.js", SCRIPT, include_str!("../../assets/sculpt.js")),
+    ("strip.js", SCRIPT, include_str!("../../assets/strip.js")),
+    ("heats.js", SCRIPT, include_str!("../../assets/heats.js")),
+    ("hover.js", SCRIPT, include_str!("../../assets/hover.js")),
+    (
+        "markers.js",
+        SCRIPT,
+        include_str!("../../assets/markers.js"),
+    ),
+    ("memory.js", SCRIPT, include_str!("../../assets/memory.js")),
     ("parts.js", SCRIPT, include_str!("../../assets/parts.js")),
     ("probes.js", SCRIPT, include_str!("../../assets/probes.js")),
     ("stage.js", SCRIPT, include_str!("../../assets/stage.js")),
@@ -63,5 +90,36 @@ fn answer(name: &str) -> Response {
     match FILES.iter().find(|(known, ..)| *known == name) {
         Some((_, kind, text)) => ([(header::CONTENT_TYPE, *kind)], *text).into_response(),
         None => StatusCode::NOT_FOUND.into_response(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use mesh_render::color::{hex, HEAT_STOPS};
+
+    #[test]
+    fn the_page_has_the_colours_of_the_report() {
+        for name in ["heats.js", "style.css"] {
+            let file = FILES.iter().find(|(known, ..)| *known == name);
+            let (.., text) = file.unwrap();
+            for stop in HEAT_STOPS {
+                assert!(text.contains(&hex(stop)), "{name}: {}", hex(stop));
+            }
+        }
+    }
+
+    /// Every module that a file of the page names is served.
+    #[test]
+    fn no_file_is_missing() {
+        for (name, _, text) in FILES {
+            for part in text.split("from \"./").skip(1) {
+                let asked = part.split('"').next().unwrap();
+                assert!(
+                    FILES.iter().any(|(known, ..)| *known == asked),
+                    "{name}: {asked}"
+                );
+            }
+        }
     }
 }

@@ -9,14 +9,13 @@ use axum::response::{IntoResponse, Response};
 use mesh_draping::landmarks::{write, Form};
 use mesh_draping::{initial_deformation, Outcome, Preset};
 use mesh_render::{Gallery, Page, View};
-use tokio::sync::oneshot;
 use tokio::task::spawn_blocking;
 
-use super::App;
+use super::{snapshot, App};
 use crate::broadcast::ShownShape;
-use crate::controller::{Inbox, Snapshot, OPEN_FIRST};
+use crate::controller::{Snapshot, OPEN_FIRST};
 use crate::replay::Replayed;
-use crate::session::{landmarks, RunLog, Session};
+use crate::session::{landmarks, painted_rigid, RunLog, Session};
 use crate::shapes::Shapes;
 
 /// Pixels along the side of a picture in the report.
@@ -29,11 +28,9 @@ struct Download {
     bytes: Vec<u8>,
 }
 
-/// The result, the warp, the landmarks, the report or the session.
+/// The result, the warp, the landmarks, what is painted, the report or the session.
 pub(super) async fn export(State(app): State<Arc<App>>, Path(what): Path<String>) -> Response {
-    let (sender, answer) = oneshot::channel();
-    app.controller.send(Inbox::Snapshot(sender));
-    let Ok(snapshot) = answer.await else {
+    let Some(snapshot) = snapshot(&app).await else {
         return StatusCode::SERVICE_UNAVAILABLE.into_response();
     };
     let made = spawn_blocking(move || make(&what, snapshot)).await;
@@ -89,6 +86,8 @@ fn make(what: &str, snapshot: Snapshot) -> Result<Download> {
             "application/json",
             work.landmarks().into_bytes(),
         )),
+        "weights" => work.weights(),
+        "rigid" => work.rigid(),
         "result" => work.result(),
         "warp" => Ok(download(
             "result.drape",
@@ -129,18 +128,35 @@ impl Work {
     /// The landmarks that are complete.
     fn landmarks(&self) -> String {
         let (source, target) = (&self.shapes.source, &self.shapes.target);
-        let complete = landmarks(&self.session.document.marks);
+        let complete = landmarks(&self.session.document.marks, &self.shapes.source);
         write(&complete, source, target, Form::Json).text
+    }
+
+    /// The weights that were painted, for `drape --weights`.
+    fn weights(&self) -> Result<Download> {
+        let path = self.session.document.parts.weights.as_ref();
+        let path = path.filter(|path| !path.starts_with("property:"));
+        painted("weights.txt", path.context("no weights were painted")?)
+    }
+
+    /// What is painted rigid, for `drape --rigid`.
+    fn rigid(&self) -> Result<Download> {
+        let path = painted_rigid(&self.session.document.parts);
+        painted("rigid.txt", path.context("nothing is painted rigid")?)
     }
 
     /// The shape that is shown and how it came about.
     fn replayed(&self) -> Result<Replayed> {
         let (log, shown) = (self.log(), self.shown()?);
         let preset = Preset::from_toml(&log.settings)?;
-        let start = self.shapes.pair(landmarks(&log.landmarks));
+        let start = self
+            .shapes
+            .pair(landmarks(&log.landmarks, &self.shapes.source));
         Ok(Replayed {
             initial: initial_deformation(&start, preset.initial)?.positions,
-            pair: self.shapes.pair(landmarks(log.last_landmarks())),
+            pair: self
+                .shapes
+                .pair(landmarks(log.last_landmarks(), &self.shapes.source)),
             preset,
             draped: shown.positions.as_ref().clone(),
             network: shown.provenance.as_ref().and_then(|p| p.network.clone()),
@@ -171,6 +187,15 @@ impl Work {
             iteration: 0,
         })
     }
+}
+
+/// A file that was painted.
+fn painted(name: &str, path: &str) -> Result<Download> {
+    Ok(Download {
+        name: name.to_owned(),
+        kind: "text/plain; charset=utf-8",
+        bytes: std::fs::read(path)?,
+    })
 }
 
 /// The report page of a result.

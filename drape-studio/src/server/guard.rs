@@ -43,15 +43,21 @@ impl Guard {
         let mut bytes = [0u8; 16];
         getrandom::fill(&mut bytes)
             .map_err(|error| anyhow::anyhow!("the system gives no random numbers: {error}"))?;
+        let token = bytes.iter().map(|byte| format!("{byte:02x}")).collect();
+        Ok(Self::with_token(address, token))
+    }
+
+    /// A guard with a token that pages know already.
+    pub(crate) fn with_token(address: SocketAddr, token: String) -> Self {
         let port = address.port();
-        Ok(Self {
-            token: bytes.iter().map(|byte| format!("{byte:02x}")).collect(),
+        Self {
+            token,
             hosts: vec![
                 format!("127.0.0.1:{port}"),
                 format!("localhost:{port}"),
                 address.to_string(),
             ],
-        })
+        }
     }
 
     pub(crate) fn token(&self) -> &str {

@@ -3,6 +3,7 @@
 mod assets;
 mod export;
 mod guard;
+mod kept;
 mod open;
 mod socket;
 
@@ -18,7 +19,8 @@ use axum::Router;
 use tokio::net::TcpListener;
 
 use crate::broadcast::Broadcast;
-use crate::controller::ControllerHandle;
+use crate::controller::{ControllerHandle, Inbox, Snapshot};
+use crate::kept_files::KeptFiles;
 pub(crate) use guard::Guard;
 
 /// Largest file that a page may send.
@@ -32,6 +34,8 @@ pub(crate) struct App {
     pub(crate) broadcast: Arc<Broadcast>,
     /// Folder of the files that pages send.
     pub(crate) uploads: PathBuf,
+    /// Where kept results and other sessions are.
+    pub(crate) files: KeptFiles,
     pub(crate) sockets: tokio::sync::Semaphore,
 }
 
@@ -39,12 +43,13 @@ impl App {
     pub(crate) fn new(
         controller: ControllerHandle,
         broadcast: Arc<Broadcast>,
-        uploads: PathBuf,
+        session: &std::path::Path,
     ) -> Self {
         Self {
             controller,
             broadcast,
-            uploads,
+            uploads: session.with_extension("files"),
+            files: KeptFiles::beside(session),
             sockets: tokio::sync::Semaphore::new(MAX_SOCKETS),
         }
     }
@@ -56,6 +61,8 @@ pub(crate) async fn serve(listener: TcpListener, guard: Guard, app: App) -> std:
     let studio = Router::new()
         .route("/{file}", get(assets::file))
         .route("/mesh/{name}", get(mesh))
+        .route("/looks/{name}/{what}", get(kept::looks))
+        .route("/kept/{id}/{what}", get(kept::kept))
         .route("/open/{role}/{name}", post(open::open))
         .route("/export/{what}", get(export::export))
         .route("/ws", get(socket::upgrade))
@@ -71,12 +78,16 @@ pub(crate) async fn serve(listener: TcpListener, guard: Guard, app: App) -> std:
     axum::serve(listener, router).await
 }
 
+/// All that there is now; none where the studio ends.
+async fn snapshot(app: &App) -> Option<Snapshot> {
+    let (sender, answer) = tokio::sync::oneshot::channel();
+    app.controller.send(Inbox::Snapshot(sender));
+    answer.await.ok()
+}
+
 /// The buffers of a shape.
 async fn mesh(State(app): State<Arc<App>>, Path(name): Path<String>) -> Response {
-    let (sender, answer) = tokio::sync::oneshot::channel();
-    app.controller
-        .send(crate::controller::Inbox::Snapshot(sender));
-    let Ok(snapshot) = answer.await else {
+    let Some(snapshot) = snapshot(&app).await else {
         return StatusCode::SERVICE_UNAVAILABLE.into_response();
     };
     let bytes = match name.as_str() {

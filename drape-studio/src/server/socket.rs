@@ -15,7 +15,7 @@ use tokio::task::spawn_blocking;
 use super::App;
 use crate::broadcast::ShownShape;
 use crate::controller::{Inbox, Request};
-use crate::figures::Heat;
+use crate::heat::Heat;
 
 /// Largest message that a page may send: a settings file.
 const MAX_MESSAGE: usize = 256 << 10;

@@ -5,7 +5,8 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{anyhow, ensure, Context as _};
 use mesh_core::io::write_atomic;
-use mesh_draping::plain_words;
+use mesh_draping::landmarks::MAX_WEIGHT;
+use mesh_draping::{plain_words, Stroke};
 use serde::{Deserialize, Serialize};
 
 use super::mark::Mark;
@@ -48,7 +49,8 @@ impl InputRecord {
     }
 }
 
-fn fnv1a(bytes: &[u8]) -> u64 {
+/// FNV-1a hash.
+pub(crate) fn fnv1a(bytes: &[u8]) -> u64 {
     bytes.iter().fold(0xcbf2_9ce4_8422_2325, |hash, &byte| {
         (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
     })
@@ -93,8 +95,18 @@ impl Session {
             mirrors.into_iter().all(|axis| axis < 3),
             "names an axis that is none"
         );
+        let mut held = documents.clone().map(|d| d.n_strokes);
+        ensure!(
+            held.all(|n| n <= self.strokes.len()),
+            "names strokes of a brush that are not there"
+        );
+        let mut strokes = self.strokes.iter();
+        strokes.try_for_each(Stroke::check)?;
         let events = self.run.iter().flat_map(|run| &run.events);
         for event in events {
+            if let Change::Brushed(stroke) = &event.change {
+                stroke.check()?;
+            }
             let is_long = matches!(event.change, Change::Extended(n) if n > MAX_MORE_ITERATIONS);
             ensure!(!is_long, "gives a drape more iterations than it can do");
         }
@@ -132,7 +144,7 @@ impl Session {
             .map(|d| &d.marks)
             .chain(runs)
             .flatten()
-            .filter_map(|m| m.source);
+            .flat_map(Mark::source_places);
         for vertex in places.flat_map(|place| place.vertices) {
             ensure!(
                 (vertex as usize) < n_vertices,
@@ -150,9 +162,14 @@ fn check_sum(session: &serde_json::Value) -> anyhow::Result<String> {
 }
 
 fn is_finite(mark: &Mark) -> bool {
-    let weights = mark.source.iter().flat_map(|s| s.weights);
-    let target = mark.target.iter().flatten().copied();
-    weights.chain(target).all(f64::is_finite)
+    let weights = mark.source_places().flat_map(|s| s.weights);
+    let line = mark
+        .curve
+        .iter()
+        .flat_map(|lines| lines.target.iter().flatten());
+    let target = mark.target.iter().flatten().chain(line).copied();
+    let is_in_range = (0.0..=MAX_WEIGHT).contains(&mark.weight);
+    is_in_range && weights.chain(target).all(f64::is_finite)
 }
 
 #[cfg(test)]
@@ -172,6 +189,8 @@ mod tests {
             }),
             target: Some([f64::MIN_POSITIVE, -0.0, 1e300]),
             kind: MarkKind::Rigid,
+            weight: 0.1 + 0.2,
+            curve: None,
         };
         let parts = Parts {
             free: vec!["bag".to_owned()],

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::mark::Mark;
-use mesh_draping::Parts;
+use mesh_draping::{Parts, Stroke};
 
 /// A drape from its start to where it is.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -39,6 +39,10 @@ pub(crate) enum Change {
     Landmarks(Vec<Mark>),
     /// Parts of the source are treated in these ways from here on.
     Parts(Parts),
+    /// The shape was brushed.
+    Brushed(Stroke),
+    /// The newest stroke that still held was taken back.
+    Unbrushed,
     /// The run got this many iterations more.
     Extended(usize),
     /// The drape was put together again from its saved state.
@@ -58,6 +62,19 @@ impl RunLog {
             Change::Landmarks(marks) => Some(marks),
             _ => None,
         })
+    }
+
+    /// The strokes that hold at the end.
+    pub(crate) fn strokes(&self) -> Vec<&Stroke> {
+        let mut strokes = Vec::new();
+        for event in &self.events {
+            match &event.change {
+                Change::Brushed(stroke) => strokes.push(stroke),
+                Change::Unbrushed => drop(strokes.pop()),
+                _ => {}
+            }
+        }
+        strokes
     }
 
     /// The ways of treating parts that hold at the end.

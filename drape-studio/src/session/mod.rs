@@ -1,16 +1,21 @@
 //! A session: inputs, landmarks, settings, every edit, and the drape in progress.
 
 mod file;
+mod kept;
 mod log;
 mod mark;
+mod painted;
+mod strokes;
 
-pub(crate) use file::{read, InputRecord};
+pub(crate) use file::{fnv1a, read, InputRecord};
+pub(crate) use kept::{Kept, NamedSettings};
 pub(crate) use log::{Change, Event, RunLog};
-pub(crate) use mark::{landmarks, Mark, MarkKind, SourcePlace};
+pub(crate) use mark::{fingerprint, landmarks, numbers, Lines, Mark, MarkKind, SourcePlace};
+pub(crate) use painted::{painted_rigid, RIGID_FOLDER};
 
 use serde::{Deserialize, Serialize};
 
-use mesh_draping::Parts;
+use mesh_draping::{Parts, Stroke};
 
 /// How many edits can be undone.
 const MAX_UNDO: usize = 200;
@@ -28,6 +33,15 @@ pub(crate) struct Session {
     pub(crate) document: Document,
     pub(crate) next_id: u32,
     pub(crate) run: Option<RunLog>,
+    /// Results that were kept, in order.
+    #[serde(default)]
+    pub(crate) kept: Vec<Kept>,
+    /// Targets that wait for their turn.
+    #[serde(default)]
+    pub(crate) queue: Vec<InputRecord>,
+    /// Every stroke of a brush on the drape in progress, those that were undone last.
+    #[serde(default)]
+    strokes: Vec<Stroke>,
     undo: Vec<Document>,
     redo: Vec<Document>,
 }
@@ -45,6 +59,15 @@ pub(crate) struct Document {
     /// Parts of the source that the next drape treats in their own way.
     #[serde(default)]
     pub(crate) parts: Parts,
+    /// Settings under names of the user's.
+    #[serde(default)]
+    pub(crate) saved: Vec<NamedSettings>,
+    /// Kept results that were taken out of the list.
+    #[serde(default)]
+    pub(crate) dismissed: Vec<u32>,
+    /// How many strokes hold.
+    #[serde(default)]
+    pub(crate) n_strokes: usize,
 }
 
 impl Session {
@@ -59,9 +82,15 @@ impl Session {
                 settings,
                 mirror: None,
                 parts: Parts::default(),
+                saved: Vec::new(),
+                dismissed: Vec::new(),
+                n_strokes: 0,
             },
             next_id: 1,
             run: None,
+            kept: Vec::new(),
+            queue: Vec::new(),
+            strokes: Vec::new(),
             undo: Vec::new(),
             redo: Vec::new(),
         }
@@ -116,13 +145,35 @@ impl Session {
         id
     }
 
+    /// Another target comes: the landmarks wait in order for their places on it; curves are drawn anew.
+    pub(crate) fn wait_for_target(&mut self) {
+        let marks = &mut self.document.marks;
+        marks.retain(|mark| mark.source.is_some());
+        marks.iter_mut().for_each(|mark| mark.target = None);
+        self.forget_edits();
+    }
+
+    /// Another source comes: the landmarks wait in order for their places on it; curves are drawn anew.
+    pub(crate) fn wait_for_source(&mut self) {
+        let marks = &mut self.document.marks;
+        marks.retain(|mark| mark.target.is_some());
+        marks.iter_mut().for_each(|mark| mark.source = None);
+        self.document.parts = Parts::default();
+        self.forget_edits();
+    }
+
+    fn forget_edits(&mut self) {
+        self.undo.clear();
+        self.redo.clear();
+        self.begin_strokes(Vec::new());
+        self.run = None;
+    }
+
     /// Forgets what depends on inputs that are no longer there.
     pub(crate) fn forget_places(&mut self) {
         self.document.marks.clear();
         self.document.parts = Parts::default();
-        self.undo.clear();
-        self.redo.clear();
-        self.run = None;
+        self.forget_edits();
     }
 }
 
@@ -132,11 +183,8 @@ mod tests {
 
     fn mark(id: u32) -> Mark {
         Mark {
-            id,
-            name: String::new(),
-            source: None,
             target: Some([f64::from(id); 3]),
-            kind: MarkKind::Soft,
+            ..Mark::empty(id)
         }
     }
 

@@ -170,7 +170,7 @@ impl CarriedNormals {
 }
 
 /// `v / |v|`; none where v is zero or its length is more than a number can hold.
-pub(super) fn unit(v: Vector3) -> Option<Vector3> {
+pub(crate) fn unit(v: Vector3) -> Option<Vector3> {
     v.try_normalize(f64::MIN_POSITIVE)
         .filter(|n| n.iter().all(|c| c.is_finite()))
 }

@@ -6,6 +6,7 @@ use std::path::Path;
 use super::contents::{Contents, Morphs};
 use super::fault::{Fault, Unwritable};
 use super::finding::Finding;
+use super::looks::{NamedPicture, Rgb};
 use super::uvs::CornerUvs;
 use crate::{Point3, PolygonSoup, Vector3};
 
@@ -74,6 +75,21 @@ pub(super) trait Document: fmt::Debug + Send + Sync {
     /// The texture coordinates that can go into a file of another format.
     fn corner_uvs(&self, _soup: &PolygonSoup) -> Option<CornerUvs> {
         None
+    }
+
+    /// One colour per vertex.
+    fn vertex_colors(&self, _n_vertices: usize) -> Option<Vec<Rgb>> {
+        None
+    }
+
+    /// The texture coordinates that are shown.
+    fn shown_uvs(&self, soup: &PolygonSoup) -> Option<CornerUvs> {
+        self.corner_uvs(soup)
+    }
+
+    /// The pictures on faces of a file in a folder.
+    fn pictures(&self, _contents: &Contents, _n_faces: usize, _folder: &Path) -> Vec<NamedPicture> {
+        Vec::new()
     }
 
     /// What keeps the vertices from being moved one by one, whatever their new positions.

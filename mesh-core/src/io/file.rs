@@ -11,6 +11,7 @@ use super::error::{ReadError, ReadProblem, WriteError};
 use super::fault::{check_size, Fault};
 use super::finding::Finding;
 use super::format::Format;
+use super::looks::{read_pictures, Looks};
 use super::save::{check_finite, encode, packed_as_named, write_atomic};
 use super::{conversion, encoding, gzip, input};
 use crate::{Point3, PolygonSoup, Positions, Vector3};
@@ -179,6 +180,27 @@ impl MeshFile {
     /// ```
     pub fn vertex_scalars(&self, name: &str) -> Option<Vec<f64>> {
         self.document.vertex_scalars(name)
+    }
+
+    /// What the file says of the looks of its surface. The libraries and pictures that it names are read from its folder
+    /// and what is below, each time this is asked; those that are not there are left out.
+    pub fn looks(&self) -> Looks {
+        let folder = self.path.parent().unwrap_or(Path::new(""));
+        let uvs = self.document.shown_uvs(&self.soup);
+        let corner_uvs = uvs.map(|uvs| {
+            let faces = self.soup.faces.iter().enumerate();
+            let corners = faces.map(|(f, corners)| (0..corners.len()).map(move |c| (f, c)));
+            corners
+                .map(|corners| corners.map(|(f, c)| uvs.at(f, c)).collect())
+                .collect()
+        });
+        let n_faces = self.soup.faces.len();
+        let pictures = self.document.pictures(&self.contents, n_faces, folder);
+        Looks {
+            vertex_colors: self.document.vertex_colors(self.soup.positions.len()),
+            corner_uvs,
+            pictures: read_pictures(pictures, folder),
+        }
     }
 
     /// Writes this file with the vertices at `x`, all or nothing.

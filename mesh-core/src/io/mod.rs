@@ -5,6 +5,7 @@
 //! | read a source, with all that is needed to write it back | [`read_mesh`] |
 //! | read a target | [`read_soup`], [`read_points`] |
 //! | write a source with new positions | [`MeshFile::write`] |
+//! | see its colours, texture coordinates and pictures | [`MeshFile::looks`] |
 //! | carry, keep or drop its morph targets | [`MeshFile::set_morphs`] |
 //! | write a shape made in code | [`write_soup`] |
 //! | write any file all or nothing; know before whether that will do | [`write_atomic`], [`check_writable`] |
@@ -40,6 +41,7 @@ mod format;
 mod gltf;
 mod gzip;
 mod input;
+mod looks;
 mod obj;
 mod off;
 mod ply;
@@ -51,10 +53,12 @@ mod triangles;
 mod uvs;
 mod xyz;
 
+pub(crate) use contents::unit;
 pub use contents::{Contents, Morphs, NamedFaces};
 pub use error::{Place, ReadError, ReadProblem, WriteError};
 pub use file::{read_mesh, read_points, read_soup, read_stream, MeshFile, PointSet};
 pub use finding::Finding;
 pub use format::Format;
+pub use looks::{Looks, Picture, Rgb};
 pub use printable::printable;
 pub use save::{check_writable, write_atomic, write_soup};

@@ -7,6 +7,7 @@ use super::contents::{polygon_area_vector, CarriedNormals, Contents, Morphs, Nam
 use super::document::{Codec, Document, Geometry, Parsed};
 use super::error::ReadProblem;
 use super::fault::{excerpt, Fault};
+use super::looks::{of_libraries, NamedPicture, Rgb};
 use super::text::{integer, number, push_text, Cursor, Field, Splice};
 use super::uvs::CornerUvs;
 use crate::{Point3, PolygonSoup, Vector3};
@@ -275,6 +276,14 @@ impl Document for ObjFile {
         corner_uvs(&self.bytes)
     }
 
+    fn vertex_colors(&self, n_vertices: usize) -> Option<Vec<Rgb>> {
+        vertex_colors(&self.bytes).filter(|colors| colors.len() == n_vertices)
+    }
+
+    fn pictures(&self, contents: &Contents, _: usize, folder: &Path) -> Vec<NamedPicture> {
+        of_libraries(contents, folder)
+    }
+
     /// Coordinates that did not change keep their text.
     fn rewrite(&self, rest: &PolygonSoup, moved: &[Point3], _: Morphs) -> Result<Vec<u8>, Fault> {
         let normals = carried_normals(&self.bytes, rest, moved);
@@ -386,6 +395,26 @@ fn corner_uvs(bytes: &[u8]) -> Option<CornerUvs> {
     });
     let any = uvs.faces.iter().flatten().any(Option::is_some);
     any.then_some(uvs)
+}
+
+/// The three numbers behind the coordinates of each vertex, white where there are none; brought to 0..=1 where they are
+/// bytes.
+fn vertex_colors(bytes: &[u8]) -> Option<Vec<Rgb>> {
+    let (mut colors, mut any) = (Vec::new(), false);
+    each_statement(bytes, |keyword, cursor| {
+        if keyword == b"v" {
+            let fields = std::iter::from_fn(|| cursor.field()).skip(3).take(4);
+            let numbers: Vec<f64> = fields.filter_map(|field| number(field.text)).collect();
+            any |= numbers.len() >= 3;
+            colors.push(match numbers[..] {
+                [r, g, b, ..] => [r, g, b].map(|c| c as f32),
+                _ => [1.0; 3],
+            });
+        }
+    });
+    let are_bytes = colors.iter().flatten().any(|&c: &f32| c > 1.0);
+    let scale = if are_bytes { 1.0 / 255.0 } else { 1.0 };
+    any.then(|| colors.iter().map(|c| c.map(|x| x * scale)).collect())
 }
 
 /// A new file of `soup`.

@@ -5,6 +5,7 @@ mod exposure;
 mod neighbourhood;
 mod open_boundary;
 mod orientation;
+mod patches;
 mod point_cloud;
 mod point_tree;
 mod propagate;
@@ -14,6 +15,7 @@ mod triangle_soup;
 mod welded;
 
 pub use exposure::is_exposed;
+pub use patches::Patches;
 pub use point_cloud::{Denoised, PointCloud};
 pub use stray::Strays;
 pub use surfels::SurfelCloud;
@@ -113,6 +115,12 @@ pub trait TargetSurface: Send + Sync {
 
     /// Whether the place lies on an open boundary of the surface: the edge of a hole, the end of a scan. Cracks are none.
     fn is_on_boundary(&self, location: &Location) -> bool;
+
+    /// The surface divided among places on it, which tells what hangs together along it; none of a cloud, whose points
+    /// nothing joins.
+    fn patches(&self, _places: &[SurfaceSample]) -> Option<Patches> {
+        None
+    }
 
     /// The smallest box around the surface.
     fn bounds(&self) -> Aabb;

@@ -145,13 +145,7 @@ mod tests {
 
     /// `more` after the faces of `soup`, with its own vertices.
     fn joined(mut soup: PolygonSoup, more: PolygonSoup) -> PolygonSoup {
-        let n = soup.positions.len() as u32;
-        soup.positions.extend(more.positions);
-        let moved = more
-            .faces
-            .into_iter()
-            .map(|f| f.into_iter().map(|v| v + n).collect());
-        soup.faces.extend(moved);
+        soup.append(more);
         soup
     }
 

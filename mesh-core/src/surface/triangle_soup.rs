@@ -4,6 +4,7 @@ use rayon::prelude::*;
 
 use super::open_boundary::open_boundary;
 use super::orientation::Orientation;
+use super::patches::Patches;
 use super::stray::Strays;
 use super::welded::WeldedTriangles;
 use super::{Location, NormalSign, SurfacePoint, SurfaceSample, TargetSurface};
@@ -180,6 +181,11 @@ impl TargetSurface for TriangleSoup {
             }
             Location::Point { .. } => false,
         }
+    }
+
+    fn patches(&self, places: &[SurfaceSample]) -> Option<Patches> {
+        let corners = |row| self.bvh.triangle(row);
+        Some(Patches::new(&self.fans, corners, places))
     }
 
     fn bounds(&self) -> Aabb {

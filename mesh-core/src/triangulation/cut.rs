@@ -78,10 +78,10 @@ fn split_quad(
     }
 }
 
-fn fan(polygon: &[VertexId]) -> impl Iterator<Item = [VertexId; 3]> + '_ {
-    polygon[1..]
-        .windows(2)
-        .map(|side| [polygon[0], side[0], side[1]])
+/// The triangles from the first corner of a polygon; none of fewer than three corners.
+pub(crate) fn fan<T: Copy>(polygon: &[T]) -> impl Iterator<Item = [T; 3]> + '_ {
+    let sides = polygon.windows(2).skip(1);
+    sides.map(|side| [polygon[0], side[0], side[1]])
 }
 
 /// Constrained Delaunay triangulation of the polygon, projected along its area vector; a fan where the projection

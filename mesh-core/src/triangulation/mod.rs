@@ -6,7 +6,7 @@ mod cut;
 use std::ops::Range;
 
 pub use connectivity::Pieces;
-pub(crate) use cut::Cut;
+pub(crate) use cut::{fan, Cut};
 
 use connectivity::Connectivity;
 

@@ -128,10 +128,7 @@ fn faces_keep_their_loops_and_own_their_triangles() {
 fn pieces_are_what_edges_join() {
     let mut two = shapes::prism(5);
     let n = two.positions.len() as u32;
-    let other = shapes::open_grid(2, 2);
-    two.positions.extend(other.positions);
-    let moved = |f: &Vec<u32>| f.iter().map(|v| v + n).collect();
-    two.faces.extend(other.faces.iter().map(moved));
+    two.append(shapes::open_grid(2, 2));
     two.positions.push(mesh_core::Point3::new(9.0, 9.0, 9.0));
     let (t, x) = built(two);
     let pieces = t.pieces();

@@ -3,8 +3,8 @@
 //! Thresholds come from the twelve pairs of `data/pairs`: none of them is warned about, and exchanging a left and a
 //! right landmark is found in all but the few cases where the two lie close together.
 
-use mesh_core::{Aabb, Landmark, Point3, TargetSurface};
-use mesh_init::{point_pairs, PointPair};
+use mesh_core::{Aabb, Curve, Landmark, Point3, TargetSurface};
+use mesh_init::PointPair;
 
 use super::finding::Shared;
 use super::ways::Ways;
@@ -19,6 +19,8 @@ const SAME_PLACE: f64 = 1e-6;
 const EXCHANGE_GAIN: f64 = 0.97;
 /// Share of the misfit that a mirror image must leave, at most, to suspect that left and right are exchanged.
 const MIRROR_GAIN: f64 = 0.7;
+/// Share of the misfit that exchanging the ends of a curve must leave, at most, to suspect that it runs the other way.
+const REVERSED_GAIN: f64 = 0.7;
 /// Share of the misfit that leaving one landmark out must leave, at most, to suspect that it is wrong. Shapes that
 /// truly differ come close: without the tip of its tail, the horse fits the wolf with 0.46 of the misfit.
 const OUTLIER_GAIN: f64 = 0.42;
@@ -52,15 +54,27 @@ pub(crate) fn examine(pair: &Pair) -> Vec<Finding> {
 }
 
 /// How far each landmark is from where the similarity of all others takes it, in longest sides of the target's box. Of
-/// more than a thousand landmarks, that of all.
+/// more than a thousand landmarks, that of all. Those of curves are no others and have none, nor are those of weight 0.
 pub fn leave_one_out_residuals(pair: &Pair) -> Vec<f64> {
     let case = Case::of(pair);
-    case.residuals(&case.pairs)
+    let map = Similarity::fit(&case.pairs);
+    let rest = pair.source.rest();
+    let miss = |l: &&Landmark| {
+        let pair = PointPair::new(l.source.position(rest), l.target);
+        map.miss(&pair) / case.side
+    };
+    let mut residuals: Vec<f64> = case.landmarks.iter().map(miss).collect();
+    for (&row, left_out) in case.rows.iter().zip(case.residuals(&case.pairs)) {
+        residuals[row] = left_out;
+    }
+    residuals
 }
 
 struct Case<'a> {
     pair: &'a Pair,
-    landmarks: &'a [Landmark],
+    /// The landmarks that are not of a curve, and the rows among them of those that count.
+    landmarks: Vec<&'a Landmark>,
+    rows: Vec<usize>,
     pairs: Vec<PointPair>,
     target: &'a dyn TargetSurface,
     /// Longest side of the target's box.
@@ -70,12 +84,19 @@ struct Case<'a> {
 
 impl<'a> Case<'a> {
     fn of(pair: &'a Pair) -> Self {
-        let (landmarks, rest) = (&pair.landmarks, pair.source.rest());
+        let rest = pair.source.rest();
+        let landmarks: Vec<&Landmark> = Landmark::marked(&pair.landmarks).collect();
+        let rows = (0..landmarks.len()).filter(|&row| landmarks[row].is_followed());
+        let rows: Vec<usize> = rows.collect();
+        let place = |&row: &usize| {
+            PointPair::new(landmarks[row].source.position(rest), landmarks[row].target)
+        };
         let target = pair.target.judged().as_ref();
         Self {
             pair,
+            pairs: rows.iter().map(place).collect(),
             landmarks,
-            pairs: point_pairs(landmarks, rest),
+            rows,
             target,
             side: target.bounds().longest_side(),
             source_side: Aabb::of(rest.iter()).longest_side(),
@@ -87,16 +108,59 @@ impl<'a> Case<'a> {
         findings.extend(self.off_surface());
         findings.extend(self.same_places());
         findings.extend(self.inconsistent());
+        findings.extend(self.curves());
         findings
     }
 
     fn label(&self, k: usize) -> Label {
-        Label::new(k, self.landmarks[k].name.as_deref())
+        let row = self.rows[k];
+        Label::new(row, self.landmarks[row].name.as_deref())
+    }
+
+    /// Curves that are off the target, or probably run the other way.
+    fn curves(&self) -> Vec<Finding> {
+        let runs = Curve::runs(&self.pair.landmarks).enumerate();
+        let followed = runs.filter(|(_, (curve, _))| curve.weight > 0.0);
+        let findings = followed.flat_map(|(k, (curve, cut))| {
+            let label = Label::of_curve(k, curve.name.as_deref());
+            let points: Vec<Point3> = cut.iter().map(|l| l.target).collect();
+            let far = self.target.closest_points(&points).into_iter();
+            let far = far
+                .map(|hit| hit.distance_squared.sqrt())
+                .fold(0.0, f64::max)
+                / self.side;
+            let off = (far > OFF_SURFACE).then(|| Finding::OffSurface {
+                landmark: label.clone(),
+                distance: far,
+            });
+            let reversed = self.is_reversed(cut);
+            off.into_iter()
+                .chain(reversed.then_some(Finding::CurveReversed { curve: label }))
+        });
+        findings.collect()
+    }
+
+    /// Whether the landmarks of the pair expect the ends of a curve exchanged.
+    fn is_reversed(&self, cut: &[Landmark]) -> bool {
+        if self.pairs.len() < ENOUGH_FOR_AFFINE {
+            return false;
+        }
+        let map = Similarity::fit(&self.pairs);
+        let rest = self.pair.source.rest();
+        let rms = |targets: &mut dyn Iterator<Item = &Landmark>| {
+            let pairs = cut.iter().zip(targets);
+            let pairs = pairs.map(|(l, to)| PointPair::new(l.source.position(rest), to.target));
+            map.rms(&pairs.collect::<Vec<_>>())
+        };
+        rms(&mut cut.iter().rev()) < REVERSED_GAIN * rms(&mut cut.iter())
     }
 
     /// Whether there are fewer than it takes. Without any, the pose is searched, and that says what was assumed.
     fn too_few(&self) -> Option<Finding> {
-        match self.landmarks.len() {
+        // A curve leads as some landmarks do.
+        let is_led = Curve::runs(&self.pair.landmarks).next().is_some();
+        match self.pairs.len() {
+            _ if is_led => None,
             0 => None,
             n if n < ENOUGH_FOR_AFFINE => Some(Finding::TooFew {
                 n,
@@ -322,9 +386,10 @@ fn exchanged(pairs: &[PointPair]) -> Option<[usize; 2]> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::cut;
     use super::*;
     use crate::{Seams, Source, Target};
-    use mesh_core::{shapes, VertexId};
+    use mesh_core::{shapes, MeshPoint, VertexId};
 
     /// Eight corners of a lopsided box on the target `2 x`, each marked.
     fn corners() -> Pair {
@@ -379,6 +444,26 @@ mod tests {
         let twice = findings(|l| l.push(l[0].clone()));
         let (a, b, on) = (label(0), label(8), Shared::Both);
         assert_eq!(twice, [Finding::SamePlace { a, b, on }]);
+
+        let curve = |ends: [usize; 2]| {
+            let mut pair = corners();
+            let target = ends.map(|v| pair.source.rest()[VertexId::new(v)] * 2.0);
+            let brow = Curve {
+                name: Some("brow".to_owned()),
+                source: [0, 1].map(|v| MeshPoint::vertex(VertexId::new(v))).into(),
+                target: target.into(),
+                weight: 1.0,
+            };
+            let cut = cut(brow, &pair.source).unwrap();
+            pair.landmarks.extend(cut);
+            examine(&pair)
+        };
+        assert!(curve([0, 1]).is_empty());
+        let told = curve([1, 0])[0].to_string();
+        assert!(
+            told.starts_with("curve 0 (brow) probably runs the other way"),
+            "{told}"
+        );
 
         let few = findings(|l| l.truncate(3));
         assert_eq!(few[0], Finding::TooFew { n: 3, least: 4 });

@@ -1,7 +1,8 @@
 //! A landmark as a file has it, and its places on the shapes.
 
-use mesh_core::{FaceId, Landmark, LandmarkKind, MeshPoint, Point3, Vector3, VertexId};
+use mesh_core::{Curve, FaceId, Landmark, LandmarkKind, MeshPoint, Point3, Vector3, VertexId};
 
+use super::curve::cut;
 use super::LandmarkProblem;
 use crate::{Shape, Source};
 
@@ -19,6 +20,33 @@ pub(super) struct Entry {
     pub(super) source: SourcePlace,
     pub(super) target: TargetPlace,
     pub(super) kind: LandmarkKind,
+    pub(super) weight: f64,
+}
+
+/// A curve whose places are not yet looked up.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct CurveEntry {
+    pub(super) name: Option<String>,
+    pub(super) source: Vec<SourcePlace>,
+    pub(super) target: Vec<TargetPlace>,
+    pub(super) weight: f64,
+}
+
+/// What a file holds.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Entries {
+    pub(super) landmarks: Vec<Entry>,
+    pub(super) curves: Vec<CurveEntry>,
+}
+
+impl Entries {
+    /// Landmarks without a curve.
+    pub(super) fn of(landmarks: Vec<Entry>) -> Self {
+        Self {
+            landmarks,
+            ..Self::default()
+        }
+    }
 }
 
 /// Vertices and faces are rows of the file.
@@ -47,7 +75,28 @@ impl Entry {
             source: self.source.resolve(source)?,
             target: self.target.resolve(target)?,
             kind: self.kind,
+            weight: self.weight,
+            curve: None,
         })
+    }
+}
+
+impl CurveEntry {
+    /// Looks the places up, and cuts the curve into landmarks.
+    pub(super) fn resolve(
+        &self,
+        source: &Source,
+        target: &[Point3],
+    ) -> Result<Vec<Landmark>, LandmarkProblem> {
+        let on_source = self.source.iter().map(|place| place.resolve(source));
+        let on_target = self.target.iter().map(|place| place.resolve(target));
+        let curve = Curve {
+            name: self.name.clone(),
+            source: on_source.collect::<Result<_, _>>()?,
+            target: on_target.collect::<Result<_, _>>()?,
+            weight: self.weight,
+        };
+        cut(curve, source)
     }
 }
 

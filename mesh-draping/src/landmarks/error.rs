@@ -25,8 +25,8 @@ pub enum LandmarkPlace {
     File,
     /// A line, counted from 1.
     Line(usize),
-    /// A landmark.
-    Landmark(Label),
+    /// A landmark or a curve.
+    Entry(Label),
 }
 
 /// What is wrong with a landmark.
@@ -134,6 +134,60 @@ pub enum LandmarkProblem {
         /// The face.
         face: usize,
     },
+    /// Files of points without names, that do not belong together one by one.
+    #[error("{n_source} points on the source but {n_target} on the target")]
+    PointCounts {
+        /// How many there are of the one.
+        n_source: usize,
+        /// How many of the other.
+        n_target: usize,
+    },
+    /// A triangle of the fans of a shape that is not there.
+    #[error("the {shape} has no triangle {triangle}: its polygons are {n} triangles in fans, counted from 0")]
+    NoFanTriangle {
+        /// Whose triangle.
+        shape: Shape,
+        /// Its number.
+        triangle: usize,
+        /// How many there are.
+        n: usize,
+    },
+    /// A weight that is NaN, or out of range.
+    #[error("weight must be a number from 0 to {most}")]
+    Weight {
+        /// The largest weight.
+        most: f64,
+    },
+    /// A curve of too few places.
+    #[error("has {n} places on the {shape}: a curve needs {least}, and one that is closed, which ends where it began, 4")]
+    FewPlaces {
+        /// On which shape.
+        shape: Shape,
+        /// How many there are.
+        n: usize,
+        /// How many it takes.
+        least: usize,
+    },
+    /// A curve of one place.
+    #[error("has no length on the {shape}")]
+    NoLength {
+        /// On which shape.
+        shape: Shape,
+    },
+    /// A curve that is closed on one of the shapes only.
+    #[error("is closed on the {closed} but has two ends on the {open}")]
+    ClosedOnOne {
+        /// Where it ends where it began.
+        closed: Shape,
+        /// Where it does not.
+        open: Shape,
+    },
+    /// Two places of a curve that no triangles of the source join.
+    #[error("no way along the source joins its places {first} and {}, counted from 0", first + 1)]
+    NoWay {
+        /// The first of them.
+        first: usize,
+    },
     /// A coordinate that is NaN, infinite, or too large to be squared.
     #[error("{shape} point is not finite, or farther from the origin than 1e150")]
     NotFinite {
@@ -150,7 +204,7 @@ impl fmt::Display for LandmarkError {
         match &self.place {
             LandmarkPlace::File => {}
             LandmarkPlace::Line(line) => write!(f, "line {line}: ")?,
-            LandmarkPlace::Landmark(label) => write!(f, "{label}: ")?,
+            LandmarkPlace::Entry(label) => write!(f, "{label}: ")?,
         }
         write!(f, "{}", self.problem)
     }

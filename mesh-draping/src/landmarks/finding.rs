@@ -20,9 +20,9 @@ pub enum Finding {
         /// How many there are.
         n: usize,
     },
-    /// The place on the target is off its surface.
+    /// The place on the target is off its surface; of a curve, the farthest of its line.
     OffSurface {
-        /// Which landmark.
+        /// Which landmark or curve.
         landmark: Label,
         /// How far, in longest sides of the target's box.
         distance: f64,
@@ -62,6 +62,11 @@ pub enum Finding {
         /// The other.
         b: Label,
     },
+    /// The line of a curve on the target probably runs the other way.
+    CurveReversed {
+        /// Which curve.
+        curve: Label,
+    },
     /// A landmark is far from where the others expect it.
     Unexpected {
         /// Which landmark.
@@ -91,9 +96,9 @@ impl Finding {
             | Self::MoreOffSurface { .. }
             | Self::MoreSamePlaces { .. }
             | Self::Mirrored => (None, None),
-            Self::OffSurface { landmark, .. } | Self::Unexpected { landmark, .. } => {
-                (Some(landmark), None)
-            }
+            Self::OffSurface { landmark, .. }
+            | Self::Unexpected { landmark, .. }
+            | Self::CurveReversed { curve: landmark } => (Some(landmark), None),
             Self::SamePlace { a, b, .. }
             | Self::Exchanged { a, b }
             | Self::PerhapsExchanged { a, b } => (Some(a), Some(b)),
@@ -130,6 +135,10 @@ impl fmt::Display for Finding {
             }
             Self::Mirrored => f.write_str(
                 "the landmarks fit a mirror image better: left and right are probably exchanged throughout",
+            ),
+            Self::CurveReversed { curve } => write!(
+                f,
+                "{curve} probably runs the other way on the target: its ends are exchanged"
             ),
             Self::Exchanged { a, b } => write!(f, "{a} and {b} are probably exchanged"),
             Self::PerhapsExchanged { a, b } => {

@@ -61,6 +61,7 @@ fn entry(line: &str) -> Result<Entry, LandmarkProblem> {
         source,
         target,
         kind: LandmarkKind::Soft,
+        weight: 1.0,
     })
 }
 

@@ -1,6 +1,6 @@
 //! Landmarks of the other half of a symmetric source.
 
-use mesh_core::{Aabb, Landmark, MeshPoint, Point3, Vector3};
+use mesh_core::{Aabb, Curve, Landmark, MeshPoint, Point3, Positions, Vector3};
 use mesh_init::point_pairs;
 use nalgebra::{Matrix3, SymmetricEigen};
 
@@ -11,6 +11,8 @@ use crate::{Pair, Similarity, Source, Target};
 const SYMMETRIC: f64 = 0.01;
 /// Places nearer to each other than this share of the longest side are one.
 const SAME: f64 = 0.01;
+/// Curves whose landmarks are all nearer to some of the other than this are one: a little more than they are apart along it.
+const CURVE_SAME: f64 = 0.02;
 /// Places that spread less across their line than this share of the spread along it, squared, span no plane.
 const SPANNED: f64 = 0.01;
 /// A plane through landmarks is believed if its normal is this near to where the similarity takes the source's.
@@ -91,6 +93,18 @@ impl Plane {
     }
 }
 
+/// The plane across which a source is symmetric.
+///
+/// # Errors
+/// A source that is not symmetric across the middle of its box.
+pub(crate) fn symmetry_plane(source: &Source) -> Result<Plane, MirrorError> {
+    let Symmetry { plane, misfit, .. } = source_symmetry(source);
+    if misfit > SYMMETRIC {
+        return Err(MirrorError::NotSymmetric { misfit });
+    }
+    Ok(plane)
+}
+
 /// The landmarks that `pair` lacks on the other side, and the plane of the source.
 ///
 /// Mirrored places are moved to the nearest place of the target's surface. Landmarks on the plane, or whose counterpart
@@ -103,17 +117,14 @@ pub fn mirror(pair: &Pair) -> Result<Mirrored, MirrorError> {
         return Err(MirrorError::TooFew);
     }
     let rest = pair.source.rest();
-    let Symmetry { plane, misfit, .. } = source_symmetry(&pair.source);
-    if misfit > SYMMETRIC {
-        return Err(MirrorError::NotSymmetric { misfit });
-    }
+    let plane = symmetry_plane(&pair.source)?;
     let side = pair.source.bounds().longest_side();
     let planes = MirrorPlanes {
         target: target_plane(pair, &plane, SAME * side),
         source: plane,
     };
     let mut added: Vec<Landmark> = Vec::new();
-    for (k, l) in pair.landmarks.iter().enumerate() {
+    for (k, l) in Landmark::marked(&pair.landmarks).enumerate() {
         let at = planes.source.mirror(&l.source.position(rest));
         let is_marked = |other: &Landmark| (other.source.position(rest) - at).norm() < SAME * side;
         if pair.landmarks.iter().chain(&added).any(is_marked) {
@@ -124,6 +135,20 @@ pub fn mirror(pair: &Pair) -> Result<Mirrored, MirrorError> {
             name: twin.name.or_else(unnamed),
             ..twin
         }));
+    }
+    for (k, (curve, cut)) in Curve::runs(&pair.landmarks).enumerate() {
+        let unnamed = || Some(format!("mirror of {}", Label::of_curve(k, None)));
+        let twin = mirrored_curve(pair, curve, &planes).map(|twin| Curve {
+            name: twin.name.or_else(unnamed),
+            ..twin
+        });
+        // What cannot be cut has no way along the other half.
+        let twin = twin.and_then(|twin| super::cut(twin, &pair.source).ok());
+        let is_new = |twin: &Vec<Landmark>| {
+            let is_there = |run: &[Landmark]| runs_along(twin, run, rest, CURVE_SAME * side);
+            !is_there(cut) && !Curve::runs(&pair.landmarks).any(|(_, run)| is_there(run))
+        };
+        added.extend(twin.filter(is_new).unwrap_or_default());
     }
     Ok(Mirrored {
         added,
@@ -164,6 +189,37 @@ pub fn counterpart(pair: &Pair, landmark: &Landmark, planes: &MirrorPlanes) -> O
         source: place(pair, &image)?,
         target: pair.target.judged().closest_point(&target).point,
         kind: landmark.kind,
+        weight: landmark.weight,
+        curve: None,
+    })
+}
+
+/// The curve of the other half: the mirror images of its places, those on the target moved to its surface.
+fn mirrored_curve(pair: &Pair, curve: &Curve, planes: &MirrorPlanes) -> Option<Curve> {
+    let rest = pair.source.rest();
+    let on_source = curve.source.iter().map(|at| {
+        let image = planes.source.mirror(&at.position(rest));
+        place(pair, &image)
+    });
+    let images = curve.target.iter().map(|p| planes.target.mirror(p));
+    let on_target = pair
+        .target
+        .judged()
+        .closest_points(&images.collect::<Vec<_>>());
+    Some(Curve {
+        name: curve.name.as_deref().map(other_side),
+        source: on_source.collect::<Option<_>>()?,
+        target: on_target.iter().map(|hit| hit.point).collect(),
+        weight: curve.weight,
+    })
+}
+
+/// Whether the landmarks of one curve all lie near to some of another, on the source.
+fn runs_along(one: &[Landmark], other: &[Landmark], rest: &Positions, near: f64) -> bool {
+    let there: Vec<Point3> = other.iter().map(|l| l.source.position(rest)).collect();
+    one.iter().all(|l| {
+        let at = l.source.position(rest);
+        there.iter().any(|p| (p - at).norm() < near)
     })
 }
 

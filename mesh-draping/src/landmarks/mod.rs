@@ -4,11 +4,14 @@
 //! |---|---|
 //! | read a landmark file of any form | [`read`], [`parse`] |
 //! | write one | [`write()`] |
+//! | read and write the two point files of Faceform Wrap | [`read_wrap`], [`write_wrap`] |
+//! | cut a curve into landmarks | [`cut`] |
 //! | find what is probably wrong | [`Pair::findings`](crate::Pair::findings), [`leave_one_out_residuals`] |
 //! | mark the other half of a symmetric source | [`mirror()`]; for one landmark, [`counterpart()`] |
 //! | find how symmetric a shape is | [`source_symmetry()`], [`target_symmetry()`] |
 //! | find where one more would help most | [`suggest()`] |
 
+mod curve;
 mod doctor;
 mod entry;
 mod error;
@@ -19,20 +22,24 @@ mod lines;
 mod mirror;
 mod suggest;
 mod ways;
+mod wrap;
 mod write;
 
+pub use curve::cut;
 pub use doctor::leave_one_out_residuals;
 pub use error::{LandmarkError, LandmarkPlace, LandmarkProblem};
 pub use finding::{Finding, Shared};
-pub use label::Label;
+pub use label::{Label, Labelled};
 pub use mirror::{
     counterpart, mirror, source_symmetry, target_symmetry, MirrorError, MirrorPlanes, Mirrored,
     Plane, Symmetry,
 };
 pub use suggest::{suggest, Suggestion};
-pub use write::{write, Form, WrittenLandmarks};
+pub use wrap::{read_wrap, write_wrap, WrapPoints};
+pub use write::{write, Form, Lost, WrittenLandmarks};
 
 pub(crate) use doctor::examine;
+pub(crate) use mirror::symmetry_plane;
 
 use std::fs;
 use std::path::Path;
@@ -40,11 +47,15 @@ use std::path::Path;
 use mesh_core::{Landmark, Point3};
 
 use crate::{Source, Target};
+use entry::Entries;
 
 /// What holds the names of the form of two lists, one a line, beside its file.
 const NAMES_BESIDE: &str = "landmark_names.txt";
+/// No landmark counts more.
+pub const MAX_WEIGHT: f64 = 100.0;
 
-/// Reads a landmark file of any form: JSON with named places, JSON of two lists, or lines of numbers.
+/// Reads a landmark file of any form: JSON with named places, JSON of two lists, or lines of numbers. Curves come after the
+/// landmarks, [cut] into landmarks.
 ///
 /// # Errors
 /// The first thing that is wrong with the file, or a place that source or target does not have.
@@ -87,17 +98,22 @@ pub fn parse(
 ) -> Result<Vec<Landmark>, LandmarkError> {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let entries = if lines::is_lines(text) {
-        lines::parse(text)?
+        Entries::of(lines::parse(text)?)
     } else {
         json::parse(text, names)?
     };
-    let landmarks = entries.iter().enumerate().map(|(k, entry)| {
-        let place = || LandmarkPlace::Landmark(Label::new(k, entry.name.as_deref()));
-        entry
-            .resolve(source, target)
-            .map_err(|problem| problem.at(place()))
-    });
-    landmarks.collect()
+    let mut landmarks = Vec::with_capacity(entries.landmarks.len());
+    for (k, entry) in entries.landmarks.iter().enumerate() {
+        let place = || LandmarkPlace::Entry(Label::new(k, entry.name.as_deref()));
+        let landmark = entry.resolve(source, target);
+        landmarks.push(landmark.map_err(|problem| problem.at(place()))?);
+    }
+    for (k, curve) in entries.curves.iter().enumerate() {
+        let place = || LandmarkPlace::Entry(Label::of_curve(k, curve.name.as_deref()));
+        let cut = curve.resolve(source, target);
+        landmarks.extend(cut.map_err(|problem| problem.at(place()))?);
+    }
+    Ok(landmarks)
 }
 
 #[cfg(test)]
@@ -186,6 +202,23 @@ mod tests {
             (
                 one(at, r#"{"point": [0, 0, 1e300]}"#),
                 "target point is not finite",
+            ),
+            (
+                r#"{"landmarks": [{"name": "hem", "curve": {"source": [0, 9], "target": [[0,0,0],[1,0,0]]}}]}"#
+                    .to_owned(),
+                "curve 0 (hem): source vertex 9 does not exist",
+            ),
+            (
+                r#"{"landmarks": [{"curve": {"source": [0, 2], "target": [[0,0,0],[0,0,0]]}}]}"#.to_owned(),
+                "curve 0: has no length on the target",
+            ),
+            (
+                r#"{"landmarks": [{"curve": {"source": [0, 2]}}]}"#.to_owned(),
+                "curve must be an object of two lists",
+            ),
+            (
+                r#"{"landmarks": [{"source": {"vertex": 0}, "target": {"vertex": 0}, "weight": -1}]}"#.to_owned(),
+                "landmark 0: weight must be a number from 0 to 100",
             ),
             (
                 r#"{"source_vertices": [0], "target_points": []}"#.to_owned(),

@@ -43,6 +43,7 @@ pub fn suggest(pair: &Pair, n: usize) -> Result<Vec<Suggestion>, Error> {
     let mut marked: Vec<VertexId> = pair
         .landmarks
         .iter()
+        .filter(|l| l.is_followed())
         .map(|l: &Landmark| l.source.main_vertex())
         .collect();
     let mut suggestions = Vec::new();

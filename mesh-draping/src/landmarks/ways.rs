@@ -1,5 +1,6 @@
 //! Which landmarks are exchanged, by how far they are from each other along both shapes.
 
+use mesh_core::Landmark;
 use mesh_init::{GuideInput, LandmarkWays};
 
 use crate::stand_in::StandIn;
@@ -38,10 +39,12 @@ impl Ways {
         let stand_in = is_dense.then(|| StandIn::with_vertices(pair, N_VERTICES).ok());
         let stand_in = stand_in.flatten();
         let pair = stand_in.as_ref().map_or(pair, |s| &s.pair);
+        let followed = Landmark::marked(&pair.landmarks).filter(|l| l.is_followed());
+        let marked: Vec<Landmark> = followed.cloned().collect();
         let ways = LandmarkWays::new(GuideInput {
             triangulation: pair.source.triangulation(),
             rest: pair.source.rest(),
-            landmarks: &pair.landmarks,
+            landmarks: &marked,
             target: pair.target.draped_over().as_ref(),
         });
         Self::new(&ways)

@@ -1,8 +1,8 @@
 //! Landmarks written in any form.
 
-use std::fmt::Write as _;
+use std::fmt::{self, Write as _};
 
-use mesh_core::{Landmark, LandmarkKind, MeshPoint, Point3};
+use mesh_core::{Curve, Landmark, LandmarkKind, MeshPoint, Point3};
 use serde_json::{json, Value};
 
 use crate::{Source, Target};
@@ -10,9 +10,9 @@ use crate::{Source, Target};
 /// A form that landmarks are written in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Form {
-    /// JSON with names, places in faces and kinds: nothing is lost.
+    /// JSON with names, places in faces, kinds, weights and curves: nothing is lost.
     Json,
-    /// JSON of two lists, `source_vertices` and `target_points`.
+    /// JSON of two lists, `source_vertices` and `target_points`, and `weights` where any is not 1.
     Lists,
     /// Lines of source vertex, target x y z, name.
     Text,
@@ -30,6 +30,54 @@ pub struct WrittenLandmarks {
     /// How far the farthest place had to move to the nearest vertex, in units of its file: forms of vertices hold no
     /// other place.
     pub moved: f64,
+    /// What the form cannot hold.
+    pub lost: Vec<Lost>,
+}
+
+/// What a form of landmark file cannot hold.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Lost {
+    /// Weights other than 1.
+    Weights {
+        /// Of how many landmarks.
+        n: usize,
+    },
+    /// Curves.
+    Curves {
+        /// How many.
+        n: usize,
+    },
+}
+
+impl Lost {
+    /// What of landmarks is lost in a form that holds neither weights nor curves.
+    pub fn without_both(landmarks: &[Landmark]) -> Vec<Self> {
+        let n = Landmark::marked(landmarks)
+            .filter(|l| l.weight != 1.0)
+            .count();
+        let weights = (n > 0).then_some(Self::Weights { n });
+        weights
+            .into_iter()
+            .chain(Self::without_curves(landmarks))
+            .collect()
+    }
+
+    /// The same in one that does hold weights.
+    fn without_curves(landmarks: &[Landmark]) -> Option<Self> {
+        let n = Curve::runs(landmarks).count();
+        (n > 0).then_some(Self::Curves { n })
+    }
+}
+
+impl fmt::Display for Lost {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Weights { n: 1 } => f.write_str("the weight of 1 landmark is left out"),
+            Self::Weights { n } => write!(f, "the weights of {n} landmarks are left out"),
+            Self::Curves { n: 1 } => f.write_str("1 curve is left out"),
+            Self::Curves { n } => write!(f, "{n} curves are left out"),
+        }
+    }
 }
 
 /// The text of a landmark file. Rows are those of the files of source and target.
@@ -58,23 +106,29 @@ pub fn write(
         moved = moved.max((rest[v] - l.source.position(rest)).norm());
         source.file_row(v)
     };
+    let marked = Landmark::marked(landmarks);
     let text = match form {
         Form::Json => {
-            let entries: Vec<Value> = landmarks.iter().map(|l| entry(l, source)).collect();
+            let curves = Curve::runs(landmarks).map(|(curve, _)| curve_entry(curve, source));
+            let entries = marked.map(|l| entry(l, source)).chain(curves);
+            let entries: Vec<Value> = entries.collect();
             format!("{:#}\n", json!({ "landmarks": entries }))
         }
         Form::Lists => {
-            let vertices: Vec<usize> = landmarks.iter().map(&mut source_vertex).collect();
-            let points: Vec<[f64; 3]> = landmarks.iter().map(|l| l.target.coords.into()).collect();
-            let lists = json!({ "source_vertices": vertices, "target_points": points });
+            let vertices: Vec<usize> = marked.clone().map(&mut source_vertex).collect();
+            let points: Vec<[f64; 3]> = marked.clone().map(|l| l.target.coords.into()).collect();
+            let mut lists = json!({ "source_vertices": vertices, "target_points": points });
+            if marked.clone().any(|l| l.weight != 1.0) {
+                lists["weights"] = marked.map(|l| l.weight).collect();
+            }
             format!("{lists:#}\n")
         }
-        Form::Text => lines(landmarks, |l| {
+        Form::Text => lines(marked, |l| {
             format!("{} {}", source_vertex(l), numbers(&l.target))
         }),
         Form::Ids => {
             let mut farthest = 0.0f64;
-            let text = lines(landmarks, |l| {
+            let text = lines(marked, |l| {
                 let (row, distance) = nearest(target.vertices(), &l.target);
                 farthest = farthest.max(distance);
                 format!("{} {row}", source_vertex(l))
@@ -82,12 +136,17 @@ pub fn write(
             moved = moved.max(farthest);
             text
         }
-        Form::Points => lines(landmarks, |l| {
+        Form::Points => lines(marked, |l| {
             let from = l.source.position(source.rest());
             format!("{} {}", numbers(&from), numbers(&l.target))
         }),
     };
-    WrittenLandmarks { text, moved }
+    let lost = match form {
+        Form::Json => Vec::new(),
+        Form::Lists => Lost::without_curves(landmarks).into_iter().collect(),
+        Form::Text | Form::Ids | Form::Points => Lost::without_both(landmarks),
+    };
+    WrittenLandmarks { text, moved, lost }
 }
 
 fn entry(l: &Landmark, source: &Source) -> Value {
@@ -98,6 +157,22 @@ fn entry(l: &Landmark, source: &Source) -> Value {
     }
     if l.kind == LandmarkKind::Rigid {
         entry["kind"] = json!("rigid");
+    }
+    if l.weight != 1.0 {
+        entry["weight"] = json!(l.weight);
+    }
+    entry
+}
+
+fn curve_entry(curve: &Curve, source: &Source) -> Value {
+    let on_source: Vec<Value> = curve.source.iter().map(|at| place(at, source)).collect();
+    let on_target: Vec<[f64; 3]> = curve.target.iter().map(|p| p.coords.into()).collect();
+    let mut entry = json!({ "curve": { "source": on_source, "target": on_target } });
+    if let Some(name) = &curve.name {
+        entry["name"] = json!(name);
+    }
+    if curve.weight != 1.0 {
+        entry["weight"] = json!(curve.weight);
     }
     entry
 }
@@ -125,7 +200,10 @@ fn place(at: &MeshPoint, source: &Source) -> Value {
     json!({ "face": face.index(), "barycentric": weights })
 }
 
-fn lines(landmarks: &[Landmark], mut places: impl FnMut(&Landmark) -> String) -> String {
+fn lines<'l>(
+    landmarks: impl Iterator<Item = &'l Landmark>,
+    mut places: impl FnMut(&Landmark) -> String,
+) -> String {
     let mut text = String::new();
     for l in landmarks {
         let name = l.name.as_deref().unwrap_or_default();
@@ -176,6 +254,37 @@ mod tests {
             assert_eq!(back[0].name, landmark.name, "{form:?}");
             assert_eq!(back[0].target, landmark.target, "{form:?}");
         }
+    }
+
+    #[test]
+    fn weights_and_curves_come_back_or_are_told_as_lost() {
+        let (source, target) = shapes_of(&shapes::quad_sphere(6));
+        let text = r#"{"landmarks": [
+            {"source": {"vertex": 3}, "target": {"vertex": 3}, "weight": 0.5},
+            {"name": "brow", "weight": 2.5, "curve": {
+                "source": [0, {"face": 7, "barycentric": [0.4, 0.3, 0.2, 0.1]}, [0.1, 0.2, 1.0]],
+                "target": [0, [0.5, 0.5, 2.0], {"vertex": 9}]}},
+            {"source": {"vertex": 5}, "target": {"vertex": 5}}]}"#;
+        let read = |text: &str| parse(text, None, &source, target.vertices()).unwrap();
+        let landmarks = read(text);
+        assert_eq!(Landmark::marked(&landmarks).count(), 2);
+        let json = write(&landmarks, &source, &target, Form::Json);
+        assert_eq!(
+            (read(&json.text), json.lost),
+            (landmarks.clone(), Vec::new())
+        );
+        let lists = write(&landmarks, &source, &target, Form::Lists);
+        assert_eq!(
+            read(&lists.text)
+                .iter()
+                .map(|l| l.weight)
+                .collect::<Vec<_>>(),
+            [0.5, 1.0]
+        );
+        assert_eq!(lists.lost, [Lost::Curves { n: 1 }]);
+        let lines = write(&landmarks, &source, &target, Form::Text);
+        assert_eq!(read(&lines.text).len(), 2);
+        assert_eq!(lines.lost, [Lost::Weights { n: 1 }, Lost::Curves { n: 1 }]);
     }
 
     #[test]

@@ -81,6 +81,14 @@ pub enum PartProblem {
         /// What is wrong with it.
         problem: LineProblem,
     },
+    /// A part of a source in memory with a vertex that is not there.
+    #[error("vertex {row} does not exist: the source has {n}, counted from 0")]
+    NoVertex {
+        /// Its row.
+        row: usize,
+        /// How many there are.
+        n: usize,
+    },
     /// A weight beyond its range.
     #[error("vertex {row} has the weight {weight}; weights go from 0 to 1")]
     Weight {

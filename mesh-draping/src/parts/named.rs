@@ -32,6 +32,8 @@ pub(super) fn find(
         all(n, &nth(number, inner())?.vertices)
     } else if let Some(name) = name.strip_prefix("property:") {
         property(name, pair)?.into_iter().map(|x| x > 0.5).collect()
+    } else if let Some(vertices) = source.part(name) {
+        all(n, vertices)
     } else if let Some(part) = contents.and_then(|c| of_faces(name, c, source.mesh())) {
         part
     } else if Path::new(name).is_file() {

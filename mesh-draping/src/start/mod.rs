@@ -2,7 +2,7 @@
 
 mod trial;
 
-use mesh_core::{Positions, UnitFrame};
+use mesh_core::{Landmark, Positions, UnitFrame};
 use mesh_init::{
     fit_affine, point_pairs, FramePair, Guide, GuideConfig, GuideInput, InitError, SimilarityPrior,
 };
@@ -11,7 +11,9 @@ use rayon::prelude::*;
 
 use crate::initial::ENOUGH_TO_STAND;
 use crate::stand_in::StandIn;
-use crate::{initial_deformation, Error, InitialMethod, InitialShape, Pair, Preset};
+use crate::{
+    adjusted, initial_deformation, Draping, Error, InitialMethod, InitialShape, Pair, Preset,
+};
 use trial::Trial;
 
 /// Vertices of the stand-in that starts are tried on.
@@ -22,26 +24,55 @@ const POOR: f64 = 0.7;
 /// Where a drape starts, and with which settings it goes on from there.
 pub(crate) struct Start {
     pub(crate) shape: InitialShape,
+    /// The deformation by landmarks, before other starts were tried.
+    pub(crate) by_landmarks: Positions,
     /// Those of the preset; where these leave open what lies beyond, and the trials say that nothing does, both shapes are
     /// whole.
     pub(crate) drape: DrapeConfig,
 }
 
 impl Start {
-    /// The start that the settings name; for [`InitialMethod::Tried`] the best of several.
+    /// The start that the settings name; for [`InitialMethod::Tried`] and
+    /// [`InitialMethod::TriedByVertices`] the best of several.
     ///
     /// # Errors
     /// As [`initial_deformation`].
     pub(crate) fn choose(pair: &Pair, preset: &Preset, regions: &Regions) -> Result<Self, Error> {
+        let shape = initial_deformation(pair, preset.initial)?;
         let mut start = Self {
-            shape: initial_deformation(pair, preset.initial)?,
+            by_landmarks: shape.positions.clone(),
+            shape,
             drape: preset.drape.clone(),
         };
-        if preset.initial == InitialMethod::Tried {
+        let is_tried = matches!(
+            preset.initial,
+            InitialMethod::Tried | InitialMethod::TriedByVertices
+        );
+        if is_tried {
             // What cannot be tried is passed over: the first start needs no trial.
             let _ = start.improve(pair, preset, regions);
         }
         Ok(start)
+    }
+
+    /// A shape that nearly fits, brought to the landmarks, and the end of a run from there.
+    ///
+    /// # Errors
+    /// As [`adjusted`].
+    pub(crate) fn of_shape(pair: &Pair, preset: &Preset, shape: &Positions) -> Result<Self, Error> {
+        let positions = if pair.n_followed() == 0 {
+            shape.clone()
+        } else {
+            adjusted(pair, shape)?
+        };
+        Ok(Self {
+            by_landmarks: positions.clone(),
+            shape: InitialShape {
+                positions,
+                notes: Vec::new(),
+            },
+            drape: preset.drape.refining(Draping::n_more(preset)),
+        })
     }
 
     /// Tries this start and those that are led along the surfaces, and becomes the best of them; where all are poor, a
@@ -74,7 +105,9 @@ impl Start {
         let chosen = &better.min_by(cheapest).unwrap_or(&own).trial;
         let best = led.iter().chain([&own]).min_by(cheapest).unwrap_or(&own);
         // Without landmarks a smooth map drifts, and a rigid body is none to it.
-        let can_lead = pair.landmarks.len() >= ENOUGH_TO_STAND && regions.is_none();
+        let can_lead = preset.initial == InitialMethod::Tried
+            && pair.n_followed() >= ENOUGH_TO_STAND
+            && regions.is_none();
         let guided = (can_lead && cost(&best) > POOR)
             .then(|| Trial::guided(&stand_in.pair, preset, &regions, &best.start));
         let guided = guided.and_then(Result::ok);
@@ -96,14 +129,15 @@ struct Tried {
 
 /// Shapes of the stand-in that are led along the surfaces.
 fn led(pair: &Pair, stand_in: &StandIn) -> Vec<Positions> {
-    if pair.landmarks.len() < ENOUGH_TO_STAND {
+    if pair.n_followed() < ENOUGH_TO_STAND {
         return Vec::new();
     }
     let rest = stand_in.pick(&similar(pair));
+    let landmarks = Landmark::followed(&stand_in.pair.landmarks);
     let guide = Guide::new(GuideInput {
         triangulation: stand_in.pair.source.triangulation(),
         rest: &rest,
-        landmarks: &stand_in.pair.landmarks,
+        landmarks: &landmarks,
         target: pair.target.draped_over().as_ref(),
     });
     let Ok(guide) = guide else {

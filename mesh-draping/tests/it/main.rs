@@ -2,6 +2,8 @@
 
 mod background;
 mod contact;
+mod brush;
+mod curves;
 mod interactive;
 mod parts;
 mod run;

@@ -97,3 +97,25 @@ fn a_good_start_is_kept() {
         &start(InitialMethod::Standard)
     ));
 }
+
+#[test]
+fn a_shape_that_nearly_fits_is_a_start_of_a_short_run() {
+    let (pair, preset) = (ball_and_ellipsoid(6), short(30));
+    let before = Transfer::of_pair(pair.clone(), preset.clone()).run();
+    let before = before.expect("the pair can be draped");
+    // The next frame: a little further on, and unmarked.
+    let further = |p: &Point3| Point3::new(p.x + 0.05, p.y, p.z);
+    let mut soup = pair.target.soup().clone();
+    soup.positions.iter_mut().for_each(|p| *p = further(p));
+    let target = Target::of_soup(soup).expect("a target");
+    let next = Transfer::new(&pair.source, &target, &[], preset).with_start(before.draped.clone());
+    let draping = next.start().expect("the next frame can be draped");
+    assert_eq!(draping.n_iterations(), 20);
+    assert!(same_bits(draping.initial(), &before.draped));
+    let outcome = draping.finish().expect("an outcome");
+    assert!(outcome.notes.is_empty(), "{:?}", outcome.notes);
+
+    let wrong = Transfer::of_pair(pair, short(3)).with_start(vec![Point3::origin()].into());
+    let told = wrong.start().err().map(|error| error.to_string());
+    assert!(told.is_some_and(|told| told.contains("the shape to start from")));
+}

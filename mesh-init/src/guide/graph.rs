@@ -4,13 +4,15 @@ use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
 use mesh_core::sampling::SeededRng;
-use mesh_core::{NormalSign, Point3, Rows, TargetSurface, Vector3};
+use mesh_core::{NormalSign, Patches, Point3, Rows, SurfaceSample, TargetSurface, Vector3};
 use rayon::prelude::*;
 
 /// A sample is joined to so many others, the nearest of its own side of the surface.
 const N_NEIGHBOURS: usize = 12;
 /// Candidates for them; those on the other side of a thin part are passed over.
 const N_CANDIDATES: usize = 24;
+/// Neighbours are at most this many patches apart along the surface.
+const N_PATCHES: usize = 6;
 /// A neighbour lies at most this steeply over the tangent plane: sine of the angle.
 const STEEPEST: f64 = 0.75;
 
@@ -29,12 +31,19 @@ impl SampleGraph {
     pub(super) fn new(target: &dyn TargetSurface, n: usize) -> Self {
         let samples = target.sample(n, &mut SeededRng::new(0));
         let with_normal = samples
-            .iter()
-            .filter_map(|s| Some((s.point, target.normal(&s.location)?)));
-        let (points, normals): (Vec<Point3>, Vec<Vector3>) = with_normal.unzip();
+            .into_iter()
+            .filter_map(|s| Some((s, target.normal(&s.location)?)));
+        let (samples, normals): (Vec<SurfaceSample>, Vec<Vector3>) = with_normal.unzip();
+        let points: Vec<Point3> = samples.iter().map(|s| s.point).collect();
         let is_oriented = target.normal_sign() == NormalSign::Oriented;
+        let joints = Joints {
+            points: &points,
+            normals: &normals,
+            is_oriented,
+            patches: target.patches(&samples),
+        };
         Self {
-            neighbours: neighbours(&points, &normals, is_oriented),
+            neighbours: joints.neighbours(),
             points,
             normals,
             is_oriented,
@@ -78,43 +87,97 @@ impl SampleGraph {
     }
 }
 
-/// The neighbours of each sample; whoever has another for a neighbour is one of its.
-fn neighbours(points: &[Point3], normals: &[Vector3], is_oriented: bool) -> Rows<(u32, f64)> {
-    let own = |i: usize| -> Vec<(u32, f64)> {
-        let squared = |j: usize| (points[j] - points[i]).norm_squared();
-        let mut near: Vec<(f64, u32)> = (0..points.len()).map(|j| (squared(j), j as u32)).collect();
+/// What tells which samples are neighbours.
+struct Joints<'a> {
+    points: &'a [Point3],
+    normals: &'a [Vector3],
+    is_oriented: bool,
+    /// None of a cloud.
+    patches: Option<Patches>,
+}
+
+impl Joints<'_> {
+    /// The neighbours of each sample and their distances; whoever has another for a neighbour is one of its.
+    fn neighbours(&self) -> Rows<(u32, f64)> {
+        let n = self.points.len();
+        let mut lists: Vec<Vec<(u32, f64)>> =
+            (0..n).into_par_iter().map(|i| self.nearest(i)).collect();
+        for i in 0..n {
+            for (j, length) in lists[i].clone() {
+                let other = &mut lists[j as usize];
+                if other.iter().all(|&(k, _)| k as usize != i) {
+                    other.push((i as u32, length));
+                }
+            }
+        }
+        Rows::from_lists(lists)
+    }
+
+    /// The nearest samples that hang together with sample `i`, on its own side of the surface.
+    fn nearest(&self, i: usize) -> Vec<(u32, f64)> {
+        let squared = |j: usize| (self.points[j] - self.points[i]).norm_squared();
+        let all = 0..self.points.len();
+        let mut near: Vec<(f64, u32)> = all.map(|j| (squared(j), j as u32)).collect();
         let order = |a: &(f64, u32), b: &(f64, u32)| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1));
         let n = N_CANDIDATES.min(near.len() - 1);
         near.select_nth_unstable_by(n, order);
         near.truncate(n + 1);
         near.sort_unstable_by(order);
-        let is_neighbour = |&(squared, j): &(f64, u32)| {
+        let around = self.around(i);
+        let is_neighbour = |&(_, j): &(f64, u32)| {
             let j = j as usize;
-            let cosine = normals[i].dot(&normals[j]);
-            let along = points[j] - points[i];
-            let is_flat = |n: &Vector3| along.dot(n).abs() <= STEEPEST * squared.sqrt();
-            let is_one_side = !is_oriented || cosine >= 0.0;
-            j != i && is_one_side && is_flat(&normals[i]) && is_flat(&normals[j])
+            j != i && self.lies_beside(i, j) && self.hangs_together(i, j, &around)
         };
         let kept = near.into_iter().filter(is_neighbour).take(N_NEIGHBOURS);
         kept.map(|(squared, j)| (j, squared.sqrt())).collect()
-    };
-    let mut lists: Vec<Vec<(u32, f64)>> = (0..points.len()).into_par_iter().map(own).collect();
-    for i in 0..points.len() {
-        for (j, length) in lists[i].clone() {
-            let other = &mut lists[j as usize];
-            if other.iter().all(|&(k, _)| k as usize != i) {
-                other.push((i as u32, length));
-            }
-        }
     }
-    Rows::from_lists(lists)
+
+    /// The patches around that of sample `i`; none of a cloud.
+    fn around(&self, i: usize) -> Vec<u32> {
+        let around = |p: &Patches| p.within(p.of_place(i), N_PATCHES);
+        self.patches.as_ref().map(around).unwrap_or_default()
+    }
+
+    /// Whether two samples lie in each other's tangent planes, more or less, and on the same side of the surface.
+    fn lies_beside(&self, i: usize, j: usize) -> bool {
+        let along = self.points[j] - self.points[i];
+        let [n, m] = [self.normals[i], self.normals[j]];
+        let is_flat = |n: &Vector3| along.dot(n).abs() <= STEEPEST * along.norm();
+        (!self.is_oriented || n.dot(&m) >= 0.0) && is_flat(&n) && is_flat(&m)
+    }
+
+    /// Whether a short way along the surface leads from sample `i` to sample `j`, or both lie where it is cut open: such
+    /// samples, and those of a cloud, hang together as far as space tells.
+    fn hangs_together(&self, i: usize, j: usize, around: &[u32]) -> bool {
+        self.patches.as_ref().is_none_or(|patches| {
+            let [own, other] = [i, j].map(|place| patches.of_place(place));
+            around.binary_search(&other).is_ok()
+                || patches.ends_openly(own) && patches.ends_openly(other)
+        })
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use mesh_core::{shapes, PointCloud, TriangleSoup};
+
+    /// Two balls pressed into each other: the ways along one do not lead over the other.
+    #[test]
+    fn no_path_leads_from_one_part_to_another_that_it_runs_through() {
+        let mut soup = shapes::icosphere(4);
+        let mut beside = soup.clone();
+        let aside = Vector3::x() * 1.5;
+        beside.positions.iter_mut().for_each(|p| *p += aside);
+        soup.append(beside);
+        let graph = SampleGraph::new(&TriangleSoup::new(soup).unwrap(), 2000);
+        let reached = graph.distances(&Point3::new(-1.0, 0.0, 0.0));
+        for (p, d) in graph.points.iter().zip(reached) {
+            let is_own = (p.coords.norm() - 1.0).abs() < 5e-3;
+            let is_other = ((p - Vector3::x() * 1.5).coords.norm() - 1.0).abs() < 5e-3;
+            assert!(is_own == is_other || d.is_finite() == is_own, "{p} {d}");
+        }
+    }
 
     /// On the unit sphere the way from pole to pole is π long, over a mesh and over the points of a cloud.
     #[test]
@@ -136,19 +199,11 @@ mod tests {
     #[test]
     fn no_path_leads_through_a_gap() {
         let mut soup = shapes::open_grid(20, 20);
-        let n = soup.positions.len();
-        let above: Vec<Point3> = soup
-            .positions
-            .iter()
-            .map(|p| p + Vector3::z() * 0.02)
-            .collect();
-        let faces: Vec<Vec<u32>> = soup
-            .faces
-            .iter()
-            .map(|f| f.iter().rev().map(|v| v + n as u32).collect())
-            .collect();
-        soup.positions.extend(above);
-        soup.faces.extend(faces);
+        let mut above = soup.clone();
+        let lift = Vector3::z() * 0.02;
+        above.positions.iter_mut().for_each(|p| *p += lift);
+        above.faces.iter_mut().for_each(|face| face.reverse());
+        soup.append(above);
         let graph = SampleGraph::new(&TriangleSoup::new(soup).unwrap(), 2000);
         let start = graph.points[0];
         let is_same = |p: &Point3| (p.z > 0.01) == (start.z > 0.01);

@@ -6,7 +6,7 @@ mod graph;
 mod signature;
 mod ways;
 
-use mesh_core::{Landmark, Positions, TargetSurface, Triangulation};
+use mesh_core::{Landmark, Positions, TargetSurface, Triangulation, Vector3};
 
 use crate::initialize::{check_landmarks, check_length};
 use crate::InitError;
@@ -33,7 +33,7 @@ pub struct GuideInput<'a> {
     pub triangulation: &'a Triangulation,
     /// The source's shape, in the target's coordinates: turned, moved and scaled, not sheared. It is kept.
     pub rest: &'a Positions,
-    /// Places that belong together.
+    /// Places that belong together, each with a weight above 0.
     pub landmarks: &'a [Landmark],
     /// The shape to bring it to.
     pub target: &'a dyn TargetSurface,
@@ -189,10 +189,21 @@ fn goals(
     };
     let places = x.iter().zip(counterparts).zip(elastic.mass());
     let mut goals: Vec<Goal> = places.map(goal).collect();
-    for l in input.landmarks {
-        goals[l.source.main_vertex().index()] = Goal {
-            point: l.target,
-            weight: LANDMARK_WEIGHT,
+    // Those of curves first: where both are at one vertex, the landmark leads.
+    let is_cut = |l: &&Landmark| l.curve.is_some();
+    let (cut, marked) = (
+        input.landmarks.iter().filter(is_cut),
+        input.landmarks.iter(),
+    );
+    for l in cut.chain(marked.filter(|l| !is_cut(l))) {
+        let vertex = l.source.main_vertex();
+        let offset = match l.curve {
+            Some(_) => x[vertex] - l.source.position(x),
+            None => Vector3::zeros(),
+        };
+        goals[vertex.index()] = Goal {
+            point: l.target + offset,
+            weight: LANDMARK_WEIGHT * l.pull(),
         };
     }
     goals

@@ -1,6 +1,6 @@
 //! How far a place is from every landmark along its surface: where it is on the body, however the body stands.
 
-use mesh_core::VertexId;
+use mesh_core::{Landmark, VertexId};
 use rayon::prelude::*;
 
 use super::graph::SampleGraph;
@@ -23,7 +23,8 @@ const LARGEST_MISFIT: f32 = 0.5;
 ///
 /// gₖ(t) is the distance along the target from sample t to landmark k. What it should be, ĝₖ(v), is the distance from v to
 /// k along the source, times how much longer ways to k are on the target: a mean of that ratio over the other landmarks,
-/// the nearer to v the more. Near landmarks count most, `wₖ ~ (ĝₖ + NEAR)⁻²`, normalised to sum to 1. Without a landmark
+/// the nearer to v the more. Near landmarks count most, `wₖ ~ pₖ (ĝₖ + NEAR)⁻²` with pₖ the landmark's [pull](Landmark::pull), normalised to sum
+/// to 1. Without a landmark
 /// all is 0.
 pub(super) struct Misfits {
     n_samples: usize,
@@ -35,7 +36,7 @@ impl Misfits {
     pub(super) fn new(input: &GuideInput<'_>, graph: &SampleGraph, size: f64) -> Self {
         let n_samples = graph.points.len();
         let ways = Ways::new(input, graph);
-        let ratios = Ratios::new(&ways.between(input.landmarks, graph));
+        let ratios = Ratios::new(&ways.between(input.landmarks, graph), input.landmarks);
         let found = |t: usize| ways.on_target.iter().map(move |d| (d[t] / size) as f32);
         let found: Vec<f32> = (0..n_samples).flat_map(found).collect();
         let rows = input.rest.ids().collect::<Vec<VertexId>>();
@@ -66,10 +67,12 @@ struct Ratios {
     between: Vec<Vec<Option<f64>>>,
     /// The logarithm of the middle one.
     median: f64,
+    /// What each landmark counts.
+    pulls: Vec<f64>,
 }
 
 impl Ratios {
-    fn new(ways: &LandmarkWays) -> Self {
+    fn new(ways: &LandmarkWays, landmarks: &[Landmark]) -> Self {
         let ratio = |i: usize, j: usize| {
             let ratio = ways.on_target[j][i] / ways.on_source[j][i];
             let is_way = i != j && ratio.is_finite() && ratio > 0.0;
@@ -84,6 +87,7 @@ impl Ratios {
         Self {
             median: all.get(all.len() / 2).copied().unwrap_or(0.0),
             between,
+            pulls: landmarks.iter().map(Landmark::pull).collect(),
         }
     }
 
@@ -93,7 +97,7 @@ impl Ratios {
         let distance = |k: usize| on_source[k] * self.median.exp() / size;
         let n = self.between.len();
         let nearness: Vec<f64> = (0..n)
-            .map(|k| (distance(k) + NEAR_RATIO).powi(-2))
+            .map(|k| self.pulls[k] * (distance(k) + NEAR_RATIO).powi(-2))
             .collect();
         let of_landmark = |k: usize| {
             let (mut sum, mut total) = (self.median * MEDIAN_WEIGHT, MEDIAN_WEIGHT);
@@ -105,7 +109,8 @@ impl Ratios {
             }
             let length = on_source[k] * (sum / total).exp() / size;
             if length.is_finite() {
-                (length as f32, (length + NEAR).powi(-2) as f32)
+                let weight = self.pulls[k] * (length + NEAR).powi(-2);
+                (length as f32, weight as f32)
             } else {
                 (0.0, 0.0)
             }

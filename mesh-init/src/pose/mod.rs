@@ -208,10 +208,7 @@ mod tests {
             .is_some_and(|(angle, _)| (angle - 180.0).abs() < 1.0));
         assert!(free.turn_deg < 1.0);
 
-        let end = PointPair {
-            source: Point3::new(2.0, 0.0, 0.0),
-            target: Point3::new(-2.0, 0.0, 0.0),
-        };
+        let end = PointPair::new(Point3::new(2.0, 0.0, 0.0), Point3::new(-2.0, 0.0, 0.0));
         let turned = find(&[end]);
         assert!((turned.apply(&end.source) - end.target).norm() < 0.05);
         assert!(turned.matrix.determinant() > 0.0);

@@ -73,7 +73,8 @@ pub(super) struct Registration<'a> {
     from: QuerySurface<'a>,
     source: Vec<Place>,
     samples: Vec<Place>,
-    landmarks: Vec<[Vector3; 2]>,
+    /// Places, and what they count.
+    landmarks: Vec<([Vector3; 2], f64)>,
     is_oriented: bool,
 }
 
@@ -98,10 +99,11 @@ impl<'a> Registration<'a> {
         let source = sample_source(input.triangulation, &unit, N_FINE, &mut rng);
         let samples = sample_target(input.target, &frames[1], N_FINE, &mut rng);
         let in_units = |p: &PointPair| {
-            [
+            let places = [
                 frames[0].to_unit(&p.source).coords,
                 frames[1].to_unit(&p.target).coords,
-            ]
+            ];
+            (places, p.weight)
         };
         let triangles = input.triangulation;
         let is_large = [triangles.len(), input.target.vertices().len()].map(|n| n > LARGE);
@@ -203,11 +205,14 @@ impl<'a> Registration<'a> {
             target: m.pair[1],
             weight: 1.0,
         });
-        let marks = self.landmarks.iter().map(|&[source, target]| WeightedPair {
-            source,
-            target,
-            weight,
-        });
+        let marks = self
+            .landmarks
+            .iter()
+            .map(|&([source, target], own)| WeightedPair {
+                source,
+                target,
+                weight: weight * own,
+            });
         let (linear, shift) = least_squares(surfaces.chain(marks), prior);
         let is_sound = linear.iter().all(|x| x.is_finite()) && linear.determinant() > 1e-9;
         is_sound.then_some(Candidate {
@@ -258,10 +263,9 @@ impl<'a> Registration<'a> {
             cost += 0.5 * way.iter().map(|m| m.cost).sum::<f64>() / way.len().max(1) as f64;
             all.extend(way);
         }
-        let missed = self
-            .landmarks
-            .iter()
-            .map(|[from, to]| LANDMARK_SHARE * (at.linear * from + at.shift - to).norm());
+        let missed = self.landmarks.iter().map(|([from, to], own)| {
+            LANDMARK_SHARE * own * (at.linear * from + at.shift - to).norm()
+        });
         (all, cost + missed.sum::<f64>())
     }
 

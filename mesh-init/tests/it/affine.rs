@@ -6,10 +6,7 @@ use proptest::prelude::*;
 const PRIORS: [SimilarityPrior; 2] = [SimilarityPrior::None, SimilarityPrior::LeaveOneOut];
 
 fn pairs(sources: &[[f64; 3]], map: impl Fn(&Point3) -> Point3) -> Vec<PointPair> {
-    let pair = |&s: &[f64; 3]| PointPair {
-        source: Point3::from(s),
-        target: map(&Point3::from(s)),
-    };
+    let pair = |&s: &[f64; 3]| PointPair::new(Point3::from(s), map(&Point3::from(s)));
     sources.iter().map(pair).collect()
 }
 

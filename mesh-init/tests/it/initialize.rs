@@ -242,3 +242,34 @@ fn every_number_of_landmarks_gives_a_finite_shape() {
         }
     }
 }
+
+/// A sphere whose third landmark pulls to one side, with a weight.
+fn pulled(weight: f64, config: &InitConfig) -> (Shape, Vec<Landmark>, Positions) {
+    let s = all_shapes::shape("quad sphere", shapes::quad_sphere(8));
+    let mut list = landmarks(&[0, 20, 60, 130, 300].map(VertexId::new), &s.rest);
+    list[2].target.x += 0.5;
+    list[2].weight = weight;
+    let initial = run(&s, &list, &s.rest, config);
+    let positions = initial.expect("a ball is deformed").positions;
+    (s, list, positions)
+}
+
+#[test]
+fn a_landmark_of_weight_zero_is_as_if_it_were_not_there() {
+    for config in configs() {
+        let (s, mut list, ignored) = pulled(0.0, &config);
+        list.remove(2);
+        let without = run(&s, &list, &s.rest, &config).unwrap().positions;
+        assert_eq!(ignored, without);
+    }
+}
+
+#[test]
+fn the_lighter_a_landmark_the_less_it_pulls() {
+    for config in configs() {
+        let at = |weight: f64| pulled(weight, &config).2[VertexId::new(60)].x;
+        let places = [0.0, 1e-6, 0.2, 0.6, 1.0].map(at);
+        assert!((places[1] - places[0]).abs() < 1e-4, "{places:?}");
+        assert!(places[1..].windows(2).all(|p| p[0] < p[1]), "{places:?}");
+    }
+}

@@ -1,5 +1,5 @@
 use mesh_core::{shapes, Point3, Vector3, VertexId};
-use mesh_init::{SimilarConfig, SimilarSolver};
+use mesh_init::{PulledVertex, SimilarConfig, SimilarSolver};
 use nalgebra::Rotation3;
 
 use crate::shapes as all_shapes;
@@ -13,7 +13,7 @@ fn a_similarity_is_a_fixed_point() {
         let solver = SimilarSolver::new(
             &s.triangulation,
             &s.rest,
-            &handles,
+            &handles.map(PulledVertex::new),
             SimilarConfig::standard(),
         )
         .unwrap();
@@ -43,7 +43,11 @@ fn a_limb_that_turns_keeps_its_length() {
     let solver = SimilarSolver::new(
         &s.triangulation,
         &s.rest,
-        &handles,
+        &handles
+            .iter()
+            .copied()
+            .map(PulledVertex::new)
+            .collect::<Vec<_>>(),
         SimilarConfig::standard(),
     )
     .unwrap();

@@ -166,6 +166,7 @@ proptest! {
         let corners = s.triangulation.triangles()[3];
         let mut inside = Landmark::new(VertexId::new(0), Point3::new(0.3, 0.2, 0.1));
         inside.source = MeshPoint::barycentric(corners, [0.2, 0.3, 0.5]);
+        inside.weight = 0.3;
         let pairs = [Landmark::new(VertexId::new(5), Point3::new(1.0, 2.0, 3.0)), inside];
         assert_gradient(&LandmarkDistance(&pairs), &s.moved, &mut s.rng)?;
     }

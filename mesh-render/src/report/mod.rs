@@ -83,7 +83,10 @@ impl Page<'_> {
             let row = [
                 ("source, turned as the target", gallery.source(view)),
                 ("target", gallery.target(view)),
-                ("initial deformation", gallery.initial(&run.initial, view)),
+                (
+                    "initial deformation",
+                    gallery.initial(&run.by_landmarks, view),
+                ),
                 ("result", gallery.result(&run.draped, view)),
             ];
             rows += &figures_of(row)?;
@@ -255,23 +258,36 @@ fn number(value: f64) -> String {
     }
 }
 
-/// Each landmark with a bar as long as its distance.
+/// Each landmark with a bar as long as its distance, and each curve with that of its worst place.
 fn landmarks(run: &Outcome) -> String {
-    let Some(fit) = &run.report.landmarks else {
+    let report = &run.report;
+    let fit = report.landmarks.iter();
+    let residuals = fit.flat_map(|fit| fit.residuals.iter()).enumerate();
+    let rows = residuals.map(|(k, r)| (Label::new(k, r.name.as_deref()), r.distance, None));
+    let curves = report.curves.iter().enumerate();
+    let curves = curves.map(|(k, c)| {
+        let label = Label::of_curve(k, c.name.as_deref());
+        (label, c.max, Some(c.rms))
+    });
+    let rows: Vec<(Label, f64, Option<f64>)> = rows.chain(curves).collect();
+    if rows.is_empty() {
         return String::new();
-    };
+    }
+    let longest = rows.iter().map(|row| row.1).fold(0.0, f64::max);
     let mut html = String::from("<table>");
-    for (k, residual) in fit.residuals.iter().enumerate() {
-        let width = if fit.max > 0.0 {
-            160.0 * residual.distance / fit.max
+    for (label, distance, rms) in rows {
+        let width = if longest > 0.0 {
+            160.0 * distance / longest
         } else {
             0.0
         };
+        let rms = rms.map(|rms| format!(" at worst, {:.3} % RMS", 100.0 * rms));
         let _ = write!(
             html,
-            "<tr><th>{}</th><td><i class=\"bar\" style=\"width:{width:.0}px\"></i>{:.3} %</td></tr>",
-            escape(&Label::new(k, residual.name.as_deref()).to_string()),
-            100.0 * residual.distance
+            "<tr><th>{}</th><td><i class=\"bar\" style=\"width:{width:.0}px\"></i>{:.3} %{}</td></tr>",
+            escape(&label.to_string()),
+            100.0 * distance,
+            rms.unwrap_or_default()
         );
     }
     html + "</table>\n<p class=\"soft\">Distance from where it belongs, in % of the target's longest side.</p>\n"

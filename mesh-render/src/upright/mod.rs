@@ -247,12 +247,7 @@ mod tests {
             faces: Vec::new(),
         };
         for block in ANIMAL {
-            let piece = solid(&[block], map);
-            let first = soup.positions.len() as u32;
-            soup.positions.extend(piece.positions);
-            let faces = piece.faces.into_iter();
-            soup.faces
-                .extend(faces.map(|f| f.iter().map(|v| v + first).collect()));
+            soup.append(solid(&[block], map));
         }
         let source = Source::of_soup(soup, Seams::EXACT).unwrap();
         let alone = Upright::best(&Up::AXES.map(|(axis, _)| axis), &source_evidence(&source));

@@ -18,7 +18,7 @@ impl Drape {
     /// A landmark names a vertex that is not there, or its place or target is not finite; the old landmarks stay.
     pub fn set_landmarks(&mut self, landmarks: &[Landmark]) -> Result<(), DrapeError> {
         check_landmarks(landmarks, self.gradient.len())?;
-        self.landmarks = landmarks.to_vec();
+        self.landmarks = Landmark::followed(landmarks);
         for landmark in &mut self.landmarks {
             landmark.target = self.frame.to_unit(&landmark.target);
         }

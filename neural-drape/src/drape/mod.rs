@@ -237,9 +237,10 @@ impl Drape {
         Ok(())
     }
 
-    /// The vertices that landmarks hold.
+    /// The vertices that landmarks hold; a curve leads its vertices, but holds none of them.
     fn marked(&self) -> impl Iterator<Item = VertexId> + '_ {
-        self.landmarks.iter().flat_map(|l| l.source.vertices)
+        let marked = self.landmarks.iter().filter(|l| l.curve.is_none());
+        marked.flat_map(|l| l.source.vertices)
     }
 
     /// What the last stage leaves where it is: vertices of landmarks and of rigid bodies.

@@ -32,6 +32,18 @@ pub(crate) struct Broken {
     skinny: Vec<u32>,
 }
 
+impl Broken {
+    /// Whether nothing is broken that is not in `other`.
+    pub(super) fn is_within(&self, other: &Self) -> bool {
+        let rows = self.folds.iter().chain([&self.skinny]);
+        let others = other.folds.iter().chain([&other.skinny]);
+        let is_in = |(rows, others): (&Vec<u32>, &Vec<u32>)| {
+            rows.iter().all(|row| others.binary_search(row).is_ok())
+        };
+        rows.zip(others).all(is_in)
+    }
+}
+
 /// Edges and triangles that can break or mend when some vertices move: like [`Broken`].
 pub(crate) struct Reach(Broken);
 

@@ -231,8 +231,23 @@ impl Page {
         self.mouse("mouseReleased", at, 0);
     }
 
+    /// Moves the pointer to a place.
+    pub(crate) fn hover(&self, at: [f64; 2]) {
+        self.mouse("mouseMoved", at, 0);
+    }
+
     /// Presses at one place, moves in steps, and lets go at another.
     pub(crate) fn drag(&self, from: [f64; 2], to: [f64; 2]) {
+        self.hold(from, to);
+        self.let_go(to);
+    }
+
+    pub(crate) fn let_go(&self, at: [f64; 2]) {
+        self.mouse("mouseReleased", at, 0);
+    }
+
+    /// Presses at one place and moves in steps to another.
+    pub(crate) fn hold(&self, from: [f64; 2], to: [f64; 2]) {
         self.mouse("mouseMoved", from, 0);
         self.mouse("mousePressed", from, 1);
         for k in 1..=8 {
@@ -243,7 +258,6 @@ impl Page {
                 1,
             );
         }
-        self.mouse("mouseReleased", to, 0);
     }
 
     /// Clicks the middle of the element that a selector names.

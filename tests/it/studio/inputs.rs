@@ -4,8 +4,8 @@ use std::fs;
 
 use serde_json::{json, Value};
 
-use super::browser::{browser, point, wait_for, Page};
-use super::page::{find, n_landmarks, probed, Place};
+use super::browser::{browser, wait_for, Page};
+use super::page::{find, middle, n_landmarks, probed, Place};
 use super::server::Server;
 use crate::regions::{head_on_skin, HEAD, SKIN};
 use crate::support::Workplace;
@@ -18,14 +18,6 @@ fn page() -> Option<(Workplace, Server, Page)> {
     let page = Page::open(&browser, &server.url, [1280, 800]);
     page.wait("studio.views.result.shape");
     Some((place, server, page))
-}
-
-/// The middle of a view.
-fn middle(page: &Page, side: &str) -> [f64; 2] {
-    point(&page.value(&format!(
-        "(() => {{ const r = studio.views.of('{side}').element.getBoundingClientRect(); \
-         return [Math.round(r.left + r.width / 2), Math.round(r.top + r.height / 2)]; }})()"
-    )))
 }
 
 #[test]
@@ -113,6 +105,13 @@ fn a_mirrored_landmark_has_a_twin() {
     };
     // What is said of the landmarks moves what is below.
     page.wait("studio.state.warnings.length > 0");
+    // Nothing lies over what is below the warnings.
+    let over = page.value(
+        "(() => { const r = document.querySelector('#mirror').getBoundingClientRect(); \
+         const top = document.elementFromPoint(r.left + r.width / 2, r.top + r.height / 2); \
+         return top && top.id; })()",
+    );
+    assert_eq!(over, json!("mirror"));
     page.press("#mirror");
     page.wait("studio.state.mirror");
     for side in ["source", "target"] {

@@ -104,3 +104,30 @@ pub(crate) fn number(page: &Page, expression: &str) -> f64 {
         )
     })
 }
+
+/// The middle of a view.
+pub(crate) fn middle(page: &Page, side: &str) -> [f64; 2] {
+    point(&page.value(&format!(
+        "(() => {{ const r = studio.views.of('{side}').element.getBoundingClientRect(); \
+         return [Math.round(r.left + r.width / 2), Math.round(r.top + r.height / 2)]; }})()"
+    )))
+}
+
+/// The colour in the middle of a view.
+pub(crate) fn pixel(page: &Page, side: &str) -> [u64; 3] {
+    let read = page.value(&format!(
+        "(() => {{ const {{ gl, ratio }} = studio.painter.renderer; const b = studio.views.of('{side}').box; const out = new Uint8Array(4); \
+         const [x, y] = [b.left + b.width / 2, studio.views.size.height - b.top - b.height / 2].map((c) => Math.round(c * ratio)); \
+         gl.readPixels(x, y, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, out); return [...out]; }})()"
+    ));
+    [0, 1, 2].map(|k| read[k].as_u64().unwrap_or_default())
+}
+
+/// Lets the graphics card forget everything, and waits until the page has drawn itself anew.
+pub(crate) fn lose_graphics(page: &Page) {
+    page.value("(globalThis.lose = studio.painter.renderer.gl.getExtension('WEBGL_lose_context')).loseContext(), true");
+    page.wait("studio.painter.renderer.gl.isContextLost()");
+    page.value("lose.restoreContext(), true");
+    page.wait("!studio.painter.renderer.gl.isContextLost()");
+    probed(page);
+}

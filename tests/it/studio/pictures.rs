@@ -66,12 +66,27 @@ fn every_state_can_be_drawn() {
     page.press("#undo");
     page.wait("studio.shown.kind === 1");
     colours(&page, &save);
+    compared(&page, &save);
     page.press("#settings");
     save(&page, "settings");
     page.value("document.getElementById('settings-dialog').close(), true");
     server.kill();
     page.wait("!document.getElementById('offline').hidden");
     save(&page, "offline");
+}
+
+/// A kept result beside the run that went on from it.
+fn compared(page: &Page, save: &dyn Fn(&Page, &str)) {
+    page.press("#keep");
+    page.wait(
+        "studio.state.kept[0]?.figures && document.querySelector('#kept img').naturalWidth > 0",
+    );
+    page.press("#step");
+    page.wait("studio.shown.iteration > studio.state.kept[0].iteration");
+    page.press("#kept .kept");
+    page.wait("studio.strip.shape");
+    save(page, "compared");
+    page.press("#kept .kept");
 }
 
 /// A part that is pointed out, and what is proposed for inner pieces.

@@ -4,6 +4,16 @@ use std::io::{BufRead as _, BufReader};
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
 
+/// The arguments of a short drape of what [`crate::support::Workplace`] holds.
+pub(crate) const SHORT: [&str; 6] = [
+    "source.obj",
+    "target.ply",
+    "--landmarks",
+    "landmarks.json",
+    "--config",
+    "short.toml",
+];
+
 /// A running studio; it is killed with this.
 pub(crate) struct Server {
     child: Child,

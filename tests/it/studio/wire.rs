@@ -10,6 +10,7 @@ use tungstenite::http::HeaderValue;
 use tungstenite::{Message, WebSocket};
 
 use super::server::Server;
+use crate::support::Workplace;
 
 /// A connection such as a page has.
 pub(crate) struct Wire {
@@ -95,6 +96,17 @@ impl Wire {
             }
         }
     }
+}
+
+/// Replays the session as it is from the command line: it comes to this result, to the bit.
+pub(crate) fn replays_to(place: &Workplace, server: &Server, result: &[u8]) {
+    std::fs::write(place.path("exported.json"), download(server, "session"))
+        .expect("the session is written");
+    place.drape("replay exported.json -o replayed.obj").well();
+    assert!(
+        place.read("replayed.obj").as_bytes() == result,
+        "the replay came to another result"
+    );
 }
 
 /// What the export menu gives.

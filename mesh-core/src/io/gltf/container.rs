@@ -235,7 +235,8 @@ fn file_named(uri: &str) -> Option<PathBuf> {
         .collect()
 }
 
-fn percent_decoded(uri: &str) -> String {
+/// A name as a URI writes it, with its `%20` and the like as what they stand for.
+pub(super) fn percent_decoded(uri: &str) -> String {
     let bytes = uri.as_bytes();
     let mut out = Vec::with_capacity(bytes.len());
     let mut k = 0;

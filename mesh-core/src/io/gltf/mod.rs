@@ -7,9 +7,9 @@ mod container;
 mod extensions;
 mod file;
 mod frame;
-mod gradient;
 mod json;
 mod json_spans;
+mod looks;
 mod morphs;
 mod nodes;
 mod prune;
@@ -22,9 +22,10 @@ mod write;
 use std::path::Path;
 
 use self::file::{GltfFile, Shown};
-use super::contents::Morphs;
+use super::contents::{Contents, Morphs};
 use super::document::{Codec, Document, Geometry, Parsed, Unmovable};
 use super::fault::Fault;
+use super::looks::{NamedPicture, Rgb};
 use super::text::Cursor;
 use super::uvs::CornerUvs;
 use crate::{Point3, PolygonSoup, Vector3};
@@ -109,6 +110,15 @@ impl Document for GltfFile {
             }
         }
         any.then(|| CornerUvs::of_vertices(out, soup))
+    }
+
+    fn vertex_colors(&self, n_vertices: usize) -> Option<Vec<Rgb>> {
+        self.colors(n_vertices)
+    }
+
+    fn pictures(&self, contents: &Contents, _: usize, _: &Path) -> Vec<NamedPicture> {
+        // What was read without looking at pictures can have faults in them: they are then not shown.
+        self.pictures(&contents.materials).unwrap_or_default()
     }
 
     fn find_unmovable(&self, morphs: Morphs) -> Result<Option<Unmovable>, Fault> {

@@ -8,12 +8,11 @@ use nalgebra::Matrix3;
 use super::accessor::{Layout, Layouts};
 use super::bounds::Bounds;
 use super::container::Container;
-use super::gradient::gradients;
 use super::scene::{not_finite, Block, Displaced};
 use crate::io::contents::unit;
 use crate::io::document::Unmovable;
 use crate::io::fault::Fault;
-use crate::{Point3, PolygonSoup, Vector3};
+use crate::{map_gradients, Point3, PolygonSoup, Vector3};
 
 /// The block, the row in it and what is displaced there.
 type Use = (usize, usize, Displaced);
@@ -69,7 +68,7 @@ pub(super) fn find_uncarriable(
 
 /// Takes every displacement to the new shape, `δ' = J δ`; gives the new bounds of the accessors that changed.
 ///
-/// J is the gradient of the map around the vertex (see [`gradients`]). A normal's displacement is the difference of the two normals,
+/// J is the gradient of the map around the vertex (see [`map_gradients`]). A normal's displacement is the difference of the two normals,
 /// morphed and not, each sent through `J⁻ᵀ`; a tangent's likewise through J. Where nothing moved, bytes stay.
 pub(super) fn carry(
     buffers: &mut [Vec<u8>],
@@ -78,7 +77,7 @@ pub(super) fn carry(
     rest: &PolygonSoup,
     moved: &[Point3],
 ) -> Result<Vec<Bounds>, Fault> {
-    let maps = gradients(rest, moved);
+    let maps = map_gradients(rest, moved);
     let mut bounds = Vec::new();
     let mut layouts = Layouts::default();
     for block in blocks {

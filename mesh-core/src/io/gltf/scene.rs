@@ -49,6 +49,7 @@ pub(super) struct Block {
     pub(super) normals: Option<Arc<Layout>>,
     pub(super) tangents: Option<Arc<Layout>>,
     pub(super) uvs: Option<Arc<Layout>>,
+    pub(super) colors: Option<Arc<Layout>>,
     /// The accessors with displacements of morph targets.
     pub(super) displacements: BTreeSet<(Displaced, usize)>,
     /// Whether primitives read these positions with other normals or tangents: only one set of them is seen.
@@ -192,6 +193,7 @@ impl Scene {
         };
         let (normals, tangents) = (vector("NORMAL", 3)?, vector("TANGENT", 4)?);
         let uvs = vector("TEXCOORD_0", 2)?;
+        let colors = vector("COLOR_0", 3)?.or(vector("COLOR_0", 4)?);
 
         let block = &mut self.blocks[block];
         let rows = block.rows.clone();
@@ -210,6 +212,7 @@ impl Scene {
         block.normals = block.normals.take().or(normals);
         block.tangents = block.tangents.take().or(tangents);
         block.uvs = block.uvs.take().or(uvs);
+        block.colors = block.colors.take().or(colors);
         block.displacements.extend(displacements(primitive));
         self.add_faces(container, primitive, rows)
     }
@@ -275,6 +278,7 @@ impl Scene {
             normals: None,
             tangents: None,
             uvs: None,
+            colors: None,
             displacements: BTreeSet::new(),
             has_others: false,
             frame,

@@ -3,6 +3,7 @@
 
 mod body;
 mod header;
+mod looks;
 mod scalars;
 
 use std::path::Path;
@@ -13,8 +14,10 @@ use super::contents::{CarriedNormals, Contents, Morphs};
 use super::document::{Codec, Document, Geometry, Parsed};
 use super::error::{Place, ReadProblem};
 use super::fault::Fault;
+use super::looks::{NamedPicture, PictureAt, Rgb};
 use super::printable::printable;
 use super::text::{Cursor, Splice};
+use super::uvs::CornerUvs;
 use crate::{Point3, PolygonSoup, Vector3};
 
 pub(super) const CODEC: Codec = Codec {
@@ -289,6 +292,29 @@ impl Document for PlyFile {
     fn vertex_scalars(&self, name: &str) -> Option<Vec<f64>> {
         let values = scalars::vertex_scalars(&self.bytes, &self.header, name);
         values.ok().flatten()
+    }
+
+    fn vertex_colors(&self, _: usize) -> Option<Vec<Rgb>> {
+        let channels = ["red", "green", "blue"].map(|name| self.vertex_scalars(name));
+        let [Some(red), Some(green), Some(blue)] = channels else {
+            return None;
+        };
+        let colors = red.into_iter().zip(green).zip(blue);
+        let colors: Vec<[f64; 3]> = colors.map(|((r, g), b)| [r, g, b]).collect();
+        let are_bytes = colors.iter().flatten().any(|&c| c > 1.0);
+        let scale = if are_bytes { 1.0 / 255.0 } else { 1.0 };
+        let scaled = colors.into_iter().map(|c| c.map(|x| (x * scale) as f32));
+        Some(scaled.collect())
+    }
+
+    fn shown_uvs(&self, soup: &PolygonSoup) -> Option<CornerUvs> {
+        self.uvs(soup)
+    }
+
+    fn pictures(&self, _: &Contents, n_faces: usize, _: &Path) -> Vec<NamedPicture> {
+        let all = || std::iter::once(0..n_faces).collect();
+        let named = self.picture().map(|name| (all(), PictureAt::File(name)));
+        named.into_iter().collect()
     }
 
     /// Coordinates that did not change keep their bytes. Positions in whole-number columns become `double` columns.

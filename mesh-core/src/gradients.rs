@@ -5,7 +5,8 @@ use std::collections::HashMap;
 use nalgebra::Matrix3;
 use rayon::prelude::*;
 
-use crate::io::contents::unit;
+use crate::io::unit;
+use crate::triangulation::fan;
 use crate::{Point3, PolygonSoup, Vector3};
 
 /// Radius around a vertex in which triangles count, as a share of the root of the whole area at rest. Displacements are longer
@@ -23,22 +24,25 @@ struct Piece {
 
 /// The gradient at each vertex of the map from the positions of `rest` to `moved`; none where nothing around it moved.
 ///
-/// `J = Σ w_f |A_f| F_f / Σ w_f |A_f|` over the triangles at the vertex (w = 1) and those within [`REACH`] r of it
+/// `J = Σ w_f |A_f| F_f / Σ w_f |A_f|` over the triangles at the vertex (w = 1) and those within 0.04 r of it
 /// (`w = (1 − d²/r²)²`, d the distance to the centre of the triangles in one cell of a grid), areas at rest. `F_f` takes two edges of the triangle at rest and
 /// their normal of length `√(2 |A_f|)` to those of the moved one (the fourth corner of Sumner and Popović 2004, Eq. 1),
 /// so that J is exact where the map turns, scales and shifts. Vertices that end at one place share theirs: the copies
 /// of a vertex that is split along a seam. A vertex without a triangle near it has the mean of all.
-pub(super) fn gradients(rest: &PolygonSoup, moved: &[Point3]) -> Vec<Option<Matrix3<f64>>> {
+///
+/// # Panics
+/// If there is not one position per vertex of `rest`, or a face names a vertex that is not there.
+pub fn map_gradients(rest: &PolygonSoup, moved: &[Point3]) -> Vec<Option<Matrix3<f64>>> {
     let place_of = places(moved);
     let mut at_vertex = vec![Sum::default(); moved.len()];
     let mut total = Sum::default();
     let mut pieces = Vec::new();
-    for corners in &rest.faces {
+    for corners in rest.faces.iter().flat_map(|face| fan(face)) {
         let Some(piece) = piece(&rest.positions, moved, corners) else {
             continue;
         };
         total.add(&piece, 1.0);
-        for &v in corners {
+        for v in corners {
             at_vertex[place_of[v as usize]].add(&piece, 1.0);
         }
         pieces.push(piece);
@@ -155,10 +159,7 @@ fn places(moved: &[Point3]) -> Vec<usize> {
         .collect()
 }
 
-fn piece(rest: &[Point3], moved: &[Point3], corners: &[u32]) -> Option<Piece> {
-    let &[a, b, c] = corners else {
-        return None;
-    };
+fn piece(rest: &[Point3], moved: &[Point3], [a, b, c]: [u32; 3]) -> Option<Piece> {
     let frame = |x: &[Point3]| {
         let [a, b, c] = [a, b, c].map(|v| x[v as usize]);
         let area = (b - a).cross(&(c - a));
@@ -172,9 +173,10 @@ fn piece(rest: &[Point3], moved: &[Point3], corners: &[u32]) -> Option<Piece> {
         centre: Point3::from((p + q + r) / 3.0),
         map,
         area,
-        has_moved: corners
+        has_moved: [a, b, c]
+            .map(|v| v as usize)
             .iter()
-            .any(|&v| rest[v as usize] != moved[v as usize]),
+            .any(|&v| rest[v] != moved[v]),
     })
 }
 
@@ -185,15 +187,15 @@ mod tests {
 
     #[test]
     fn a_similarity_is_its_own_gradient_at_every_vertex() {
-        let soup = crate::shapes::icosphere(1);
         let similar = Rotation3::from_euler_angles(0.3, -1.1, 2.0).into_inner() * 92.0;
-        let moved: Vec<Point3> = soup
-            .positions
-            .iter()
-            .map(|p| Point3::from(similar * p.coords) + Vector3::new(5.0, -1.0, 3.0))
-            .collect();
-        for map in gradients(&soup, &moved) {
-            assert!((map.unwrap() - similar).norm() < 1e-10);
+        for soup in [crate::shapes::icosphere(1), crate::shapes::quad_sphere(3)] {
+            let moved = soup.positions.iter();
+            let moved: Vec<Point3> = moved
+                .map(|p| Point3::from(similar * p.coords) + Vector3::new(5.0, -1.0, 3.0))
+                .collect();
+            for map in map_gradients(&soup, &moved) {
+                assert!((map.unwrap() - similar).norm() < 1e-10);
+            }
         }
     }
 
@@ -207,10 +209,10 @@ mod tests {
             .collect();
         soup.positions.push(Point3::new(9.0, 9.0, 9.0));
         let mut moved = soup.positions.clone();
-        assert!(gradients(&soup, &moved).iter().all(Option::is_none));
+        assert!(map_gradients(&soup, &moved).iter().all(Option::is_none));
         moved[0].x -= 1.0;
         moved[8].x -= 1.0;
-        let maps = gradients(&soup, &moved);
+        let maps = map_gradients(&soup, &moved);
         assert!(maps[0].is_some() && maps[3].is_none() && maps[8].is_some());
     }
 
@@ -231,7 +233,7 @@ mod tests {
         let mut moved = soup.positions.clone();
         moved[1].z = 1.0;
         moved[5].z = -2.0;
-        let maps = gradients(&soup, &moved);
+        let maps = map_gradients(&soup, &moved);
         assert_eq!((maps[0], maps[2]), (maps[3], maps[4]));
         assert_ne!(maps[1], maps[5]);
     }
@@ -250,7 +252,7 @@ mod tests {
             .iter()
             .flat_map(|f| [vec![f[0], f[1], f[2]], vec![f[0], f[2], f[3]]])
             .collect();
-        for map in gradients(&soup, &moved) {
+        for map in map_gradients(&soup, &moved) {
             let stretch = map.map_or(1.0, |m| (m * Vector3::y()).norm());
             assert!((0.99..2.5).contains(&stretch), "{stretch}");
         }
