@@ -118,16 +118,24 @@ pub(super) fn is_crossing(s: &[Point3; 3], t: &[Point3; 3]) -> bool {
     straddles(&of_s) && straddles(&of_t) && (pierces(s, &of_s, t) || pierces(t, &of_t, s))
 }
 
+/// The edges of `s` that run through the inside of `t`, each by its first corner.
+pub(super) fn pierced_edges(s: &[Point3; 3], t: &[Point3; 3]) -> Vec<usize> {
+    let sides = s.map(|p| side(t, p));
+    (0..3).filter(|&k| is_piercing(s, &sides, k, t)).collect()
+}
+
 /// Whether an edge of `s`, whose corners lie on these sides of `t`, runs through the inside of `t`.
-fn pierces(s: &[Point3; 3], sides: &[i8; 3], &[a, b, c]: &[Point3; 3]) -> bool {
-    (0..3).any(|k| {
-        let next = (k + 1) % 3;
-        sides[k] * sides[next] == -1 && {
-            let turn = |from, to| side(&[s[k], s[next], from], to);
-            let first = turn(a, b);
-            first != 0 && turn(b, c) == first && turn(c, a) == first
-        }
-    })
+fn pierces(s: &[Point3; 3], sides: &[i8; 3], t: &[Point3; 3]) -> bool {
+    (0..3).any(|k| is_piercing(s, sides, k, t))
+}
+
+fn is_piercing(s: &[Point3; 3], sides: &[i8; 3], k: usize, &[a, b, c]: &[Point3; 3]) -> bool {
+    let next = (k + 1) % 3;
+    sides[k] * sides[next] == -1 && {
+        let turn = |from, to| side(&[s[k], s[next], from], to);
+        let first = turn(a, b);
+        first != 0 && turn(b, c) == first && turn(c, a) == first
+    }
 }
 
 /// The side of the plane of a triangle that a point is on, exactly: −1, 0 or 1.

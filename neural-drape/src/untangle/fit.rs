@@ -18,29 +18,41 @@ pub(crate) struct Fit<'a> {
 }
 
 impl Fit<'_> {
-    /// Whether the triangles `rows` fit the target at `y` where they fitted it at `x`: of their corners and middles, no place
-    /// is farther from the target than it was, unless it is near; and what of the target was near is near still.
-    pub(super) fn holds(&self, ground: Ground<'_>, rows: &[u32], [x, y]: [&Positions; 2]) -> bool {
+    /// The largest distance of a vertex from the target.
+    pub(super) fn worst(&self, x: &Positions) -> f64 {
+        let distances = self.target.closest_points(x.as_slice());
+        let distances = distances.iter().map(|hit| hit.distance_squared.sqrt());
+        distances.fold(0.0, f64::max)
+    }
+
+    /// How far from the target the triangles `rows` are at `y`, at most, where they were nearer at `x`: corners and middles
+    /// from the target, and what of the target was near from them. Zero where nothing is farther than it was.
+    pub(super) fn excess(&self, ground: Ground<'_>, rows: &[u32], [x, y]: [&Positions; 2]) -> f64 {
         let places = |x: &Positions| places(ground, rows, x);
         let (before, after) = (places(x), places(y));
-        let near = NEAR * self.size;
+        let mut excess = 0.0f64;
         let mut marks = Vec::new();
         for (old, new) in before.iter().zip(&after) {
             if old == new {
                 continue;
             }
             let [was, is] = [old, new].map(|p| self.target.closest_point(p));
-            let far = (was.point - old).norm();
-            if (is.point - new).norm() > far.max(near) {
-                return false;
+            let far = was.distance_squared.sqrt();
+            let is = is.distance_squared.sqrt();
+            if is > far {
+                excess = excess.max(is);
             }
             marks.push((was.point, far));
         }
         let surface = TriangleBvh::new(corners(ground, rows, y));
-        marks.iter().all(|(mark, far)| {
-            let hit = surface.closest_point(mark);
-            hit.is_none_or(|hit| hit.distance_squared.sqrt() <= far.max(near))
-        })
+        for (mark, far) in marks {
+            let hit = surface.closest_point(&mark);
+            let is = hit.map_or(0.0, |hit| hit.distance_squared.sqrt());
+            if is > far {
+                excess = excess.max(is);
+            }
+        }
+        excess
     }
 }
 

@@ -16,7 +16,8 @@ pub(crate) use fit::Fit;
 use push::push_apart;
 
 /// A patch grows to so many rings around what crosses, one size after the other.
-const RINGS: [usize; 3] = [1, 2, 4];
+const RINGS: &[usize] = &[0, 1, 3, 7];
+const WIDE_RINGS: &[usize] = &[0, 4, 12];
 /// A patch where more pairs cross is left as it is: it does not come free without moving far.
 const MAX_PAIRS: usize = 60;
 /// Of the ways to free a patch the one is taken that moves no vertex far; others are tried until this share of the largest
@@ -60,6 +61,20 @@ pub(crate) fn crossings(
     in_full(&Detector::new(ground, x).all_crossings(ground, x))
 }
 
+/// Where a surface goes that runs through itself, in the middle of a run.
+pub(crate) fn parted(
+    triangulation: &std::sync::Arc<Triangulation>,
+    rest: &Positions,
+    x: &Positions,
+    held: &[VertexId],
+) -> Positions {
+    let judge = Judge::new(triangulation, rest);
+    let broken = judge.broken(x);
+    let mut held = held.to_vec();
+    held.sort_unstable();
+    untangle(&judge, (x.clone(), broken), &held, None).positions
+}
+
 fn in_full(pairs: &[[u32; 2]]) -> Vec<[usize; 2]> {
     pairs.iter().map(|pair| pair.map(|t| t as usize)).collect()
 }
@@ -84,7 +99,7 @@ pub(crate) fn untangle(
     let mut left = detector.all_crossings(ground, &x);
     let (mut positions, mut broken) = (x, broken);
     if !left.is_empty() {
-        let untangler = Untangler {
+        let mut untangler = Untangler {
             ground,
             held,
             fit,
@@ -93,16 +108,25 @@ pub(crate) fn untangle(
             carrier: Carrier::new(triangulation, ground.rest),
             surroundings: Surroundings::new(judge),
             judge,
-            reach: MAX_MOTION * UnitFrame::principal(positions.as_slice()).scale,
+            limit: fit.as_ref().map_or(f64::INFINITY, |fit| fit.worst(&positions)),
+            size: UnitFrame::principal(positions.as_slice()).scale,
+            reach: param("MOTION", MAX_MOTION) * UnitFrame::principal(positions.as_slice()).scale,
         };
-        for patch in patches(triangulation, &left) {
-            let is_here = |pair: &&[u32; 2]| is_at(triangulation, &patch, pair);
-            if left.iter().filter(is_here).count() > MAX_PAIRS {
-                continue;
+        for (apart, rings) in [(1, RINGS), (4, WIDE_RINGS)] {
+            for patch in patches(triangulation, &left, apart) {
+                let n = left.iter().filter(|pair| is_at(triangulation, &patch, pair)).count();
+                let t = std::time::Instant::now();
+                let free = untangler.freed(&positions, &patch, &left, &broken, rings);
+                if verbose() {
+                    eprintln!("\n== rings {rings:?}: {} vertices, {n} pairs, freed {} {:?}", patch.len(), free.is_some(), t.elapsed());
+                }
+                if let Some(free) = free {
+                    (positions, broken) = free;
+                }
             }
-            if let Some(free) = untangler.freed(&positions, &patch, &left, &broken) {
-                left.retain(|pair| !is_at(triangulation, &patch, pair));
-                (positions, broken) = free;
+            left = untangler.detector.all_crossings(ground, &positions);
+            if left.is_empty() {
+                break;
             }
         }
     }
@@ -113,17 +137,32 @@ pub(crate) fn untangle(
     }
 }
 
-/// Vertices of the triangles that cross: those of each pair, and what touches, are one patch. Each ascending.
-fn patches(triangulation: &Triangulation, pairs: &[[u32; 2]]) -> Vec<Vec<VertexId>> {
+fn verbose() -> bool {
+    std::env::var("VERBOSE").is_ok()
+}
+
+fn param(name: &str, default: f64) -> f64 {
+    std::env::var(name).map_or(default, |v| v.parse().unwrap_or(default))
+}
+
+/// Vertices within `rings` edges of the triangles that cross: those of each pair, and what touches, are one patch. Each
+/// ascending.
+fn patches(triangulation: &Triangulation, pairs: &[[u32; 2]], rings: usize) -> Vec<Vec<VertexId>> {
     let corners = |row: u32| triangulation.triangles()[row as usize];
     let mut sets = UnionFind::new(triangulation.n_vertices());
-    let mut is_in = vec![false; triangulation.n_vertices()];
+    let mut crossing = Vec::new();
     for &[one, two] in pairs {
         let (s, t) = (corners(one), corners(two));
         for v in s.into_iter().chain(t) {
             sets.union(s[0].index(), v.index());
-            is_in[v.index()] = true;
+            crossing.push(v);
         }
+    }
+    crossing.sort_unstable();
+    crossing.dedup();
+    let mut is_in = vec![false; triangulation.n_vertices()];
+    for v in grown(triangulation, &crossing, rings) {
+        is_in[v.index()] = true;
     }
     for [a, b] in triangulation.edges().iter().map(|e| e.map(VertexId::index)) {
         if is_in[a] && is_in[b] {
@@ -153,6 +192,8 @@ struct Untangler<'a> {
     judge: &'a Judge<'a>,
     surroundings: Surroundings<'a>,
     reach: f64,
+    size: f64,
+    limit: f64,
 }
 
 impl Untangler<'_> {
@@ -164,29 +205,54 @@ impl Untangler<'_> {
         patch: &[VertexId],
         known: &[[u32; 2]],
         broken: &Broken,
+        rings: &[usize],
     ) -> Option<(Positions, Broken)> {
         let mut best: Option<(f64, Positions)> = None;
-        for rings in RINGS {
+        let good = param("GOOD", 0.005) * self.size;
+        let limit = self.limit.clamp(param("GOOD", 0.005) * self.size, param("LIMIT", 0.01) * self.size);
+        for &rings in rings {
             let mut case = Case::new(self, x, patch, known, broken, rings);
             for start in [Start::AsItIs, Start::Carried] {
+                if verbose() {
+                    eprint!("\n {rings} {start:?} {} free:", case.free.len());
+                }
+                let t = std::time::Instant::now();
                 let Some(mut moved) = case.pulled_apart(start) else {
                     continue;
                 };
+                if verbose() { eprint!(" {:?}", t.elapsed()); }
+                let t = std::time::Instant::now();
+                if self.fit.is_none() {
+                    let far = case.free.iter().map(|&v| (moved[v] - x[v]).norm());
+                    let far = far.fold(0.0, f64::max);
+                    if verbose() { eprint!(" far {:.4}", far / self.size); }
+                    if far <= self.reach {
+                        let broken = self.judge.broken(&moved);
+                        return Some((moved, broken));
+                    }
+                    continue;
+                }
+                let before = self.fit.as_ref().map(|fit| fit.excess(self.ground, &case.rows, [x, &moved]));
                 case.give_back(&mut moved);
+                if verbose() { eprint!(" back {:?}", t.elapsed()); }
                 let far = case.free.iter().map(|&v| (moved[v] - x[v]).norm());
                 let far = far.fold(0.0, f64::max);
-                let fits = |fit: &Fit<'_>| fit.holds(self.ground, &case.rows, [x, &moved]);
-                let is_less = far <= best.as_ref().map_or(self.reach, |(least, _)| *least);
-                if is_less && self.fit.as_ref().is_none_or(fits) {
-                    best = Some((far, moved));
+                let excess = self.fit.as_ref().map_or(far, |fit| fit.excess(self.ground, &case.rows, [x, &moved]));
+                if verbose() {
+                    eprint!(" far {:.4} excess {:.4} -> {:.4}", far / self.size, before.unwrap_or(0.0) / self.size, excess / self.size);
+                }
+                if far <= self.reach && best.as_ref().is_none_or(|(least, _)| excess < *least) {
+                    best = Some((excess, moved));
+                }
+                if best.as_ref().is_some_and(|(least, _)| *least <= good) {
+                    break;
                 }
             }
-            let is_good = |(far, _): &(f64, Positions)| *far <= ENOUGH * self.reach;
-            if best.as_ref().is_some_and(is_good) || best.is_some() && rings >= WIDE {
+            if best.as_ref().is_some_and(|(least, _)| *least <= good) {
                 break;
             }
         }
-        best.map(|(_, moved)| {
+        best.filter(|(least, _)| *least <= limit).map(|(_, moved)| {
             let broken = self.judge.broken(&moved);
             (moved, broken)
         })
@@ -268,26 +334,54 @@ impl<'a, 'u> Case<'a, 'u> {
         let mut y = self.x.clone();
         let is_started = match start {
             Start::AsItIs => true,
-            Start::Carried => self.all.carrier.carry(&mut y, &self.free),
+            Start::Carried => {
+                self.all.carrier.carry(&mut y, &self.free)
+            }
         };
         (is_started && self.pull_apart(&mut y)).then_some(y)
     }
 
     /// Pushes and relaxes until nothing crosses and nothing is newly folded; whether it comes to that.
     fn pull_apart(&mut self, y: &mut Positions) -> bool {
-        for _ in 0..TURNS {
+        let (mut least, mut since) = (usize::MAX, 0);
+        for _turn in 0..param("TURNS", TURNS as f64) as usize {
             let pairs = self.crossings(y);
-            if pairs.is_empty() && self.newly_broken(y).is_empty() {
+            if std::env::var("VERBOSE2").is_ok() {
+                let n = self.newly_broken(y).len();
+                eprint!(" [{} {n}]", pairs.len());
+            }
+            let folded = self.newly_broken(y);
+            let n = pairs.len() + folded.len();
+            since += 1;
+            if n < least {
+                (least, since) = (n, 0);
+            }
+            if since > param("PATIENCE", 12.0) as usize {
+                if verbose() { eprint!(" gave up at {_turn} with {n}, {least}"); }
+                return false;
+            }
+            if n == 0 {
+                if verbose() { eprint!(" {_turn} turns"); }
                 return true;
             }
             push_apart(
                 self.all.ground.triangulation,
-                self.all.ground.rest,
                 &pairs,
                 y,
                 &self.free,
             );
-            self.all.shape.relax(y, &self.free);
+            let every = param("EVERY", 6.0) as usize;
+            if _turn % every == every - 1 {
+                let rings = 1 + _turn / every / 3;
+                let mut folded = grown(self.all.ground.triangulation, &folded, rings);
+                folded.retain(|v| self.free.binary_search(v).is_ok());
+                for _ in 0..param("FLAT", 4.0) as usize {
+                    flatten(self.all.ground.triangulation, y, &folded);
+                }
+            }
+            for _ in 0..param("RELAX", 1.0) as usize {
+                self.all.shape.relax(y, &self.free);
+            }
         }
         false
     }
@@ -295,15 +389,17 @@ impl<'a, 'u> Case<'a, 'u> {
     /// Moves every vertex back towards where it was, as far as nothing crosses or folds.
     fn give_back(&mut self, y: &mut Positions) {
         let mut shares = vec![RETURN; self.free.len()];
-        let sound = self.sound();
         for turn in 0..RETURNS {
             let mut moved = y.clone();
             for (&v, share) in self.free.iter().zip(&shares) {
                 let way = self.x[v] - y[v];
                 moved[v] = y[v] + way * *share;
-                if turn >= RETURNS / 2 && way.norm() > STUCK * self.all.reach {
-                    if let Some(hit) = sound.closest_point(&y[v]) {
-                        moved[v] = y[v] + (hit.point - y[v]) * *share;
+                if turn >= RETURNS / 2 {
+                    if let Some(fit) = &self.all.fit {
+                        let hit = fit.target.closest_point(&y[v]);
+                        if hit.distance_squared.sqrt() > param("STUCK", 0.003) * self.all.size {
+                            moved[v] = y[v] + (hit.point - y[v]) * *share;
+                        }
                     }
                 }
             }
@@ -318,18 +414,6 @@ impl<'a, 'u> Case<'a, 'u> {
                 shares.iter_mut().for_each(|share| *share *= 0.5);
             }
         }
-    }
-
-    /// The surface that was there, without what crosses: it lies where the surface belongs.
-    fn sound(&mut self) -> TriangleBvh {
-        let crossing = self.detector.all_crossings(self.all.ground, self.x);
-        let mut crossing = crossing.as_flattened().to_vec();
-        crossing.sort_unstable();
-        let triangles = self.all.ground.triangulation.triangles();
-        let rows = self.detector.rows().iter();
-        let sound = rows.filter(|row| crossing.binary_search(row).is_err());
-        let corners = sound.map(|&row| triangles[row as usize].map(|v| self.x[v]));
-        TriangleBvh::new(corners.collect())
     }
 
     /// Takes back the moves of vertices that get in the way, until none does; they try half of it next time. Whether it
@@ -356,6 +440,17 @@ impl<'a, 'u> Case<'a, 'u> {
             }
         }
         false
+    }
+}
+
+/// Moves each vertex once, in their order, to the mean of its neighbours.
+fn flatten(triangulation: &Triangulation, x: &mut Positions, free: &[VertexId]) {
+    for &v in free {
+        let around = triangulation.vertex_neighbours(v);
+        let sum: mesh_core::Vector3 = around.iter().map(|&w| x[w].coords).sum();
+        if !around.is_empty() {
+            x[v] = (sum / around.len() as f64).into();
+        }
     }
 }
 

@@ -1,72 +1,109 @@
-//! Where the corners of two triangles that cross belong.
+//! Surfaces that cross, moved so that the line in which they cross gets shorter.
 
 use mesh_core::measure::{area_vector, triangle_normal};
-use mesh_core::{Point3, Positions, Triangulation, UnitFrame, Vector3, VertexId};
+use mesh_core::{Point3, Positions, Triangulation, Vector3, VertexId};
 
-/// A corner is pushed by at most this share of the edges of its triangle in one turn.
-const STEP: f64 = 0.3;
-/// A corner is pushed beyond the plane of the other triangle by this share of those edges.
-const CLEARANCE: f64 = 0.05;
+use super::crossing::pierced_edges;
 
-/// Triangles farther apart at rest than this share of the longest side faced each other: what lies behind a surface is nearer.
-const FAR: f64 = 0.08;
+/// A corner moves by at most this share of the edges of its triangles in one turn.
+const STEP: f64 = 0.25;
 
-/// Whether two triangles belong before or behind each other.
-///
-/// What faced each other at rest, as two fingers do, belongs before: the sign of `(c_s − c_t)·n_t + (c_t − c_s)·n_s` at
-/// rest, with middles c and normals n. What had the other behind it, as the lining of a lip, belongs behind.
-fn order(s: &[Point3; 3], t: &[Point3; 3], far: f64) -> f64 {
-    let between =
-        (s[0].coords + s[1].coords + s[2].coords) - (t[0].coords + t[1].coords + t[2].coords);
-    let normal = |t: &[Point3; 3]| triangle_normal(*t).unwrap_or_default();
-    if between.norm() > 3.0 * far {
-        return 1.0;
-    }
-    let before = between.dot(&normal(t)) - between.dot(&normal(s));
-    if before < 0.0 {
-        -1.0
-    } else {
-        1.0
-    }
+/// A place where an edge of one triangle runs through another: an end of the line in which they cross.
+struct End {
+    edge: [VertexId; 2],
+    triangle: [VertexId; 3],
+    /// Where along the edge, 0..=1.
+    u: f64,
+    point: Point3,
 }
 
-/// Moves the corners of the triangles of each pair towards the side of the other where they belong; those of `free` alone,
-/// given in ascending order.
+/// Moves the corners of each pair against the gradient of the length of the line in which the two cross; those of `free`
+/// alone, given in ascending order.
+///
+/// With the ends p, q of the line, `g = (p − q)/|p − q|`; where p lies at u on the edge (a, b) with direction e and at
+/// barycentric β on the triangle c with normal n, `k = n (g·e)/(n·e)`: `∂L/∂a = (1 − u)(g − k)`, `∂L/∂b = u (g − k)`,
+/// `∂L/∂c_i = β_i k`. Source: Volino and Magnenat-Thalmann 2006, contour minimisation.
 pub(super) fn push_apart(
     triangulation: &Triangulation,
-    rest: &Positions,
     pairs: &[[u32; 2]],
     x: &mut Positions,
     free: &[VertexId],
 ) {
-    let far = FAR * UnitFrame::principal(rest.as_slice()).scale;
     let mut moves = vec![(Vector3::zeros(), 0.0f64); free.len()];
     for &[one, two] in pairs {
         let [s, t] = [one, two].map(|row| triangulation.triangles()[row as usize]);
-        let [rest_s, rest_t] = [s, t].map(|t| t.map(|v| rest[v]));
-        let order = order(&rest_s, &rest_t, far);
-        for (moved, fixed) in [(s, t), (t, s)] {
-            let plane = fixed.map(|v| x[v]);
-            let Some(normal) = triangle_normal(plane) else {
-                continue;
-            };
-            let step = STEP * area_vector(moved.map(|v| x[v])).norm().sqrt();
-            for v in moved {
-                let Ok(row) = free.binary_search(&v) else {
-                    continue;
-                };
-                let depth = -order * (x[v] - plane[0]).dot(&normal);
-                if depth > 0.0 {
-                    let by = (0.5 * depth + CLEARANCE / STEP * step).min(step);
-                    moves[row].0 += normal * (order * by);
-                    moves[row].1 += 1.0;
+        let size = |t: [VertexId; 3]| area_vector(t.map(|v| x[v])).norm().sqrt();
+        let step = STEP * size(s).min(size(t));
+        let mut ends = ends(s, t, x);
+        ends.extend(self::ends(t, s, x));
+        let [one, other] = &ends[..] else { continue };
+        let along = one.point - other.point;
+        let length = along.norm();
+        if length <= f64::MIN_POSITIVE {
+            continue;
+        }
+        for (end, g) in [(one, along / length), (other, -along / length)] {
+            for (v, gradient) in gradient(end, g, x) {
+                if let Ok(row) = free.binary_search(&v) {
+                    moves[row].0 -= gradient * step;
+                    moves[row].1 = moves[row].1.max(step);
                 }
             }
         }
     }
-    for (&v, (sum, n)) in free.iter().zip(&moves) {
-        if *n > 0.0 {
-            x[v] += sum / *n;
+    for (&v, (by, most)) in free.iter().zip(&moves) {
+        let length = by.norm();
+        if length > 0.0 && length.is_finite() {
+            x[v] += by * (most / length.max(*most));
         }
     }
+}
+
+fn gradient(end: &End, g: Vector3, x: &Positions) -> [(VertexId, Vector3); 5] {
+    let [a, b] = end.edge;
+    let e = x[b] - x[a];
+    let corners = end.triangle.map(|v| x[v]);
+    let n = triangle_normal(corners).unwrap_or_default();
+    let slope = n.dot(&e);
+    // Nearly within the plane: the line grows without bound there.
+    let least = 0.05 * e.norm();
+    let slope = if slope.abs() < least { least.copysign(slope) } else { slope };
+    let k = n * (g.dot(&e) / slope);
+    let beta = barycentric(corners, end.point);
+    let [c0, c1, c2] = end.triangle;
+    [
+        (a, (g - k) * (1.0 - end.u)),
+        (b, (g - k) * end.u),
+        (c0, k * beta[0]),
+        (c1, k * beta[1]),
+        (c2, k * beta[2]),
+    ]
+}
+
+/// Where edges of `s` run through `t`.
+fn ends(s: [VertexId; 3], t: [VertexId; 3], x: &Positions) -> Vec<End> {
+    let corners = t.map(|v| x[v]);
+    let edges = pierced_edges(&s.map(|v| x[v]), &corners);
+    let of = |k: usize| {
+        let edge = [s[k], s[(k + 1) % 3]];
+        let [a, b] = edge.map(|v| x[v]);
+        let n = triangle_normal(corners)?;
+        let (from, to) = ((a - corners[0]).dot(&n), (b - corners[0]).dot(&n));
+        let u = (from / (from - to)).clamp(0.0, 1.0);
+        u.is_finite().then(|| End {
+            edge,
+            triangle: t,
+            u,
+            point: a + (b - a) * u,
+        })
+    };
+    edges.into_iter().filter_map(of).collect()
+}
+
+/// Barycentric coordinates of a point in the plane of a triangle.
+fn barycentric([a, b, c]: [Point3; 3], p: Point3) -> [f64; 3] {
+    let n = area_vector([a, b, c]);
+    let whole = n.norm_squared().max(f64::MIN_POSITIVE);
+    let part = |q: Point3, r: Point3| (area_vector([p, q, r]).dot(&n) / whole).clamp(0.0, 1.0);
+    [part(b, c), part(c, a), part(a, b)]
 }
