@@ -28,7 +28,6 @@ pub(crate) struct DisplayedPair {
     pub(crate) target: Arc<DisplayedTarget>,
     /// What is draped.
     pub(crate) shapes: Shapes,
-    /// Pairs of triangles of the source that pass through each other at rest; found once asked for.
 }
 
 /// A mesh to deform.

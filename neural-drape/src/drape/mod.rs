@@ -174,20 +174,6 @@ impl Drape {
             self.structure.anchor(&self.triangulation, x);
         }
 
-        if std::env::var("UNCROSS_AT").is_ok_and(|at| {
-            at.split(',').any(|at| at.parse() == Ok(self.iteration))
-        }) {
-            let held = self.held();
-            let x = self.parametrization.positions().clone();
-            let n = crate::untangle::crossings(&self.triangulation, &self.rest, &x).len();
-            let y = self.profile.time("uncross", || {
-                crate::untangle::parted(&self.triangulation, &self.rest, &x, &held)
-            });
-            let left = crate::untangle::crossings(&self.triangulation, &self.rest, &y).len();
-            eprintln!("\nUNCROSS {}: {n} -> {left}", self.iteration);
-            let moves = VertexData::from_vec(y.iter().zip(x.iter()).map(|(a, b)| a - b).collect());
-            self.parametrization.displace(&moves);
-        }
         let (overlap, mutual) = self.pairing.at(self.iteration, progress);
         let sampling = self.config.sampling.at(self.iteration, overlap, mutual);
         if let Some(position) = self.config.sampling.draws_from(self.iteration) {

@@ -11,7 +11,7 @@ use mesh_loss::{FoldBarrier, LocalShape};
 
 pub(crate) use judge::{Broken, Judge, Reach, Surroundings};
 
-use crate::untangle::{crossings, untangle, Fit};
+use crate::untangle::{crossings, untangle};
 
 /// A patch grows up to this many rings around what is broken.
 const MAX_RINGS: usize = 8;
@@ -69,13 +69,17 @@ impl Defects {
 /// scaled, with their surroundings held ([`LocalShape::relax`]); a patch grows until nothing in it is broken. Before,
 /// edges that are only just folded are bent back along the gradient of [`FoldBarrier`].
 ///
-/// Then crossings are taken out: what crosses is pushed apart to the sides where it was at rest, its surroundings relax,
-/// and every vertex goes back towards where it was as far as nothing crosses. What crosses at rest already may do so.
+/// What moved goes back as far as nothing breaks: a patch that was mended stays where the drape had brought it.
+///
+/// Then crossings are taken out, patch by patch: what crosses moves so that the line in which it crosses gets shorter, its
+/// surroundings relax, and every vertex goes back towards where it was, and to the target, as far as nothing crosses. What
+/// crosses at rest already may do so.
 ///
 /// A patch that does not get better by a small motion stays as it was. All else stays, to the bit.
 ///
 /// The vertices of `held`, such as those of landmarks, stay where they are. Where a target is given, in the same coordinates,
-/// no crossing is taken out at the cost of the fit.
+/// no patch comes farther from it to be free of crossings than the worst place of the whole surface, or than a hundredth of
+/// its longest side: such crossings are left.
 pub fn repair(
     triangulation: &Arc<Triangulation>,
     rest: &Positions,
@@ -86,21 +90,30 @@ pub fn repair(
     let mut held = held.to_vec();
     held.sort_unstable();
     let judge = Judge::new(triangulation, rest);
+    let crossing = crossings(triangulation, rest, x);
+    let before = Defects {
+        crossings: in_full(&crossing),
+        ..judge.defects(&judge.broken(x))
+    };
     let unfolded = unfolded(&judge, triangulation, x, &held);
-    let size = UnitFrame::principal(x.as_slice()).scale;
-    let fit = target.map(|target| Fit { target, size });
-    let untangled = untangle(&judge, unfolded, &held, fit);
+    let crossing = if unfolded.0 == *x {
+        crossing
+    } else {
+        crossings(triangulation, rest, &unfolded.0)
+    };
+    let untangled = untangle(&judge, unfolded, crossing, &held, target);
     Repair {
-        before: Defects {
-            crossings: crossings(triangulation, rest, x),
-            ..judge.defects(&judge.broken(x))
-        },
+        before,
         left: Defects {
-            crossings: untangled.left,
+            crossings: in_full(&untangled.left),
             ..judge.defects(&untangled.broken)
         },
         positions: untangled.positions,
     }
+}
+
+fn in_full(pairs: &[[u32; 2]]) -> Vec<[usize; 2]> {
+    pairs.iter().map(|pair| pair.map(|t| t as usize)).collect()
 }
 
 /// Positions without the folds and skinny triangles that could be taken out, and what of them is left.
@@ -188,7 +201,7 @@ impl Mender<'_> {
         let relaxed = |free: &[VertexId], n_flattenings: usize| {
             mended(free, SWEEPS, &mut |x, free, turn| {
                 if turn == 0 {
-                    (0..n_flattenings).for_each(|_| self.flatten(x, free));
+                    (0..n_flattenings).for_each(|_| flatten(self.triangulation, x, free));
                 }
                 self.shape.relax(x, free);
             })
@@ -246,15 +259,15 @@ impl Mender<'_> {
             }
         }
     }
+}
 
-    /// Moves each vertex of `free` once, in their order, to the mean of its neighbours.
-    fn flatten(&self, x: &mut Positions, free: &[VertexId]) {
-        for &v in free {
-            let around = self.triangulation.vertex_neighbours(v);
-            let sum: Vector3 = around.iter().map(|&w| x[w].coords).sum();
-            if !around.is_empty() {
-                x[v] = Point3::from(sum / around.len() as f64);
-            }
+/// Moves each vertex of `free` once, in their order, to the mean of its neighbours.
+pub(crate) fn flatten(triangulation: &Triangulation, x: &mut Positions, free: &[VertexId]) {
+    for &v in free {
+        let around = triangulation.vertex_neighbours(v);
+        let sum: Vector3 = around.iter().map(|&w| x[w].coords).sum();
+        if !around.is_empty() {
+            x[v] = Point3::from(sum / around.len() as f64);
         }
     }
 }
@@ -288,7 +301,7 @@ pub(crate) fn defects(
 ) -> Defects {
     let judge = Judge::new(triangulation, rest);
     Defects {
-        crossings: crossings(triangulation, rest, x),
+        crossings: in_full(&crossings(triangulation, rest, x)),
         ..judge.defects(&judge.broken(x))
     }
 }

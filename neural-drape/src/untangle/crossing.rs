@@ -21,6 +21,11 @@ impl Ground<'_> {
 
     /// Whether two triangles cross at `x` and did not at rest.
     fn is_new(&self, one: u32, other: u32, x: &Positions) -> bool {
+        let [s, t] = [one, other].map(|row| self.triangulation.triangles()[row as usize]);
+        // Triangles over an edge have no room to cross.
+        if s.iter().filter(|v| t.contains(v)).count() > 1 {
+            return false;
+        }
         let is_crossing =
             |x: &Positions| is_crossing(&self.corners(one, x), &self.corners(other, x));
         is_crossing(x) && !is_crossing(self.rest)
@@ -55,11 +60,6 @@ impl Detector {
         let is_near = |&row: &u32| meets(bounds, &Aabb::of(&ground.corners(row, x)));
         let rows = self.rows.iter().copied().filter(is_near);
         Self::of(ground, x, rows.collect())
-    }
-
-    /// The triangles that are looked at, ascending.
-    pub(crate) fn rows(&self) -> &[u32] {
-        &self.rows
     }
 
     /// All pairs that cross at `x` and did not at rest.
@@ -113,9 +113,16 @@ fn meets(a: &Aabb, b: &Aabb) -> bool {
 
 /// Whether an edge of one runs through the inside of the other; touching does not count. The signs are exact.
 pub(super) fn is_crossing(s: &[Point3; 3], t: &[Point3; 3]) -> bool {
-    let (of_s, of_t) = (s.map(|p| side(t, p)), t.map(|p| side(s, p)));
-    let straddles = |sides: &[i8; 3]| sides.contains(&1) && sides.contains(&-1);
-    straddles(&of_s) && straddles(&of_t) && (pierces(s, &of_s, t) || pierces(t, &of_t, s))
+    let of_s = s.map(|p| side(t, p));
+    if !is_straddling(&of_s) {
+        return false;
+    }
+    let of_t = t.map(|p| side(s, p));
+    is_straddling(&of_t) && (pierces(s, &of_s, t) || pierces(t, &of_t, s))
+}
+
+fn is_straddling(sides: &[i8; 3]) -> bool {
+    sides.contains(&1) && sides.contains(&-1)
 }
 
 /// The edges of `s` that run through the inside of `t`, each by its first corner.

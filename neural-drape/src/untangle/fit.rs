@@ -1,59 +1,37 @@
-//! How far from the target a patch may be moved.
+//! How far from the target a patch comes.
 
 use mesh_core::{Point3, Positions, TargetSurface, TriangleBvh, VertexId};
 
 use super::crossing::Ground;
 
-/// A place this near the target fits, in longest sides of the surface: less than the worst distances of a run tolerate, as
-/// places between those that are looked at are a little farther.
-const NEAR: f64 = 0.005;
-
-/// A target that must be fitted no worse than it was.
-#[derive(Clone, Copy)]
-pub(crate) struct Fit<'a> {
-    /// The target, in the coordinates of the surface.
-    pub(crate) target: &'a dyn TargetSurface,
-    /// The longest side of the surface.
-    pub(crate) size: f64,
+/// The largest distance of a vertex from the target.
+pub(super) fn farthest(target: &dyn TargetSurface, x: &Positions) -> f64 {
+    let hits = target.closest_points(x.as_slice());
+    let farthest = hits.iter().map(|hit| hit.distance_squared);
+    farthest.fold(0.0, f64::max).sqrt()
 }
 
-impl Fit<'_> {
-    /// The largest distance of a vertex from the target.
-    pub(super) fn worst(&self, x: &Positions) -> f64 {
-        let distances = self.target.closest_points(x.as_slice());
-        let distances = distances.iter().map(|hit| hit.distance_squared.sqrt());
-        distances.fold(0.0, f64::max)
+/// How far the triangles `rows` and the target are from each other at `y`, at most, where they were nearer at `x`: corners
+/// and middles from the target, and what of the target was next to them from the triangles. Zero where nothing is farther
+/// than it was.
+pub(super) fn excess(
+    target: &dyn TargetSurface,
+    ground: Ground<'_>,
+    rows: &[u32],
+    [x, y]: [&Positions; 2],
+) -> f64 {
+    let surface = TriangleBvh::new(corners(ground, rows, y));
+    let places = places(ground, rows, x).zip(places(ground, rows, y));
+    let mut excess = 0.0f64;
+    for (old, new) in places.filter(|(old, new)| old != new) {
+        let was = target.closest_point(&old);
+        let there = target.closest_point(&new).distance_squared;
+        let back = surface.closest_point(&was.point);
+        let back = back.map_or(0.0, |hit| hit.distance_squared);
+        let is_farther = |d: &f64| *d > was.distance_squared;
+        excess = [there, back].into_iter().filter(is_farther).fold(excess, f64::max);
     }
-
-    /// How far from the target the triangles `rows` are at `y`, at most, where they were nearer at `x`: corners and middles
-    /// from the target, and what of the target was near from them. Zero where nothing is farther than it was.
-    pub(super) fn excess(&self, ground: Ground<'_>, rows: &[u32], [x, y]: [&Positions; 2]) -> f64 {
-        let places = |x: &Positions| places(ground, rows, x);
-        let (before, after) = (places(x), places(y));
-        let mut excess = 0.0f64;
-        let mut marks = Vec::new();
-        for (old, new) in before.iter().zip(&after) {
-            if old == new {
-                continue;
-            }
-            let [was, is] = [old, new].map(|p| self.target.closest_point(p));
-            let far = was.distance_squared.sqrt();
-            let is = is.distance_squared.sqrt();
-            if is > far {
-                excess = excess.max(is);
-            }
-            marks.push((was.point, far));
-        }
-        let surface = TriangleBvh::new(corners(ground, rows, y));
-        for (mark, far) in marks {
-            let hit = surface.closest_point(&mark);
-            let is = hit.map_or(0.0, |hit| hit.distance_squared.sqrt());
-            if is > far {
-                excess = excess.max(is);
-            }
-        }
-        excess
-    }
+    excess.sqrt()
 }
 
 fn corners(ground: Ground<'_>, rows: &[u32], x: &Positions) -> Vec<[Point3; 3]> {
@@ -64,10 +42,10 @@ fn corners(ground: Ground<'_>, rows: &[u32], x: &Positions) -> Vec<[Point3; 3]> 
 }
 
 /// Corners and middles of triangles.
-fn places(ground: Ground<'_>, rows: &[u32], x: &Positions) -> Vec<Point3> {
+fn places(ground: Ground<'_>, rows: &[u32], x: &Positions) -> impl Iterator<Item = Point3> {
     let of = |[a, b, c]: [Point3; 3]| {
         let middle = (a.coords + b.coords + c.coords) / 3.0;
         [a, b, c, middle.into()]
     };
-    corners(ground, rows, x).into_iter().flat_map(of).collect()
+    corners(ground, rows, x).into_iter().flat_map(of)
 }

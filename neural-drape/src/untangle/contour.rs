@@ -23,7 +23,7 @@ struct End {
 /// With the ends p, q of the line, `g = (p − q)/|p − q|`; where p lies at u on the edge (a, b) with direction e and at
 /// barycentric β on the triangle c with normal n, `k = n (g·e)/(n·e)`: `∂L/∂a = (1 − u)(g − k)`, `∂L/∂b = u (g − k)`,
 /// `∂L/∂c_i = β_i k`. Source: Volino and Magnenat-Thalmann 2006, contour minimisation.
-pub(super) fn push_apart(
+pub(super) fn shorten(
     triangulation: &Triangulation,
     pairs: &[[u32; 2]],
     x: &mut Positions,
