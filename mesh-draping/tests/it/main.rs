@@ -1,8 +1,8 @@
 //! The method as a user of the library has it.
 
 mod background;
-mod contact;
 mod brush;
+mod contact;
 mod curves;
 mod interactive;
 mod parts;

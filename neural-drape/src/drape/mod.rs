@@ -3,7 +3,7 @@
 mod changes;
 mod resume;
 
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 
 use mesh_core::sampling::SeededRng;
 use mesh_core::{
@@ -19,7 +19,7 @@ use crate::network::{NetworkMap, Shapes};
 use crate::objective::{self, DistanceLoss, StructuralLoss, TermReport};
 use crate::regions::{Follow, Guidance, Regions};
 use crate::schedule::Weights;
-use crate::{DrapeError, DrapeInput, Parametrization, Repair};
+use crate::{Crossings, DrapeError, DrapeInput, Parametrization, Repair};
 
 /// So many times in a run, parts that nothing attracts follow the rest.
 const N_FOLLOWS: usize = 5;
@@ -62,6 +62,15 @@ pub struct Drape {
     gradient: VertexData<Vector3>,
     rng: SeededRng,
     profile: Profile,
+    /// What [`Self::finish`] came to when it was asked last.
+    ended: Mutex<Option<End>>,
+}
+
+/// The last stage, and what it was computed from.
+struct End {
+    positions: Positions,
+    held: Vec<VertexId>,
+    repair: Repair,
 }
 
 impl Drape {
@@ -146,6 +155,7 @@ impl Drape {
             initial,
             rng,
             profile: Profile::off(),
+            ended: Mutex::default(),
             config,
         };
         drape.set_landmarks(input.landmarks)?;
@@ -249,27 +259,43 @@ impl Drape {
     }
 
     /// The result: the positions, without the new folds, skinny triangles and crossings that can be taken out if the settings
-    /// ask for it ([`crate::repair`]). The drape stays as it is and can go on.
+    /// ask for it ([`crate::repair`]). The drape stays as it is and can go on. Asked again, it is not computed again.
+    ///
+    /// Crossings stay in a shape that was moved by [`Self::displace`] after the last step: it is as someone wants it.
     pub fn finish(&self) -> Repair {
         let positions = self.positions();
-        if self.config.repair {
-            let held = self.held();
-            let target = self.matcher.target().as_ref();
-            crate::repair(
-                &self.triangulation,
-                &self.rest,
-                &positions,
-                &held,
-                Some(target),
-            )
-        } else {
-            let defects = crate::repair::defects(&self.triangulation, &self.rest, &positions);
-            Repair {
-                positions,
-                left: defects.clone(),
-                before: defects,
+        let held = self.held();
+        let mut last = self.ended.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(end) = last.as_ref() {
+            if end.positions == positions && end.held == held {
+                return end.repair.clone();
             }
         }
+        let repair = self.last_stage(&positions, &held);
+        *last = Some(End {
+            repair: repair.clone(),
+            positions,
+            held,
+        });
+        repair
+    }
+
+    fn last_stage(&self, positions: &Positions, held: &[VertexId]) -> Repair {
+        if !self.config.repair {
+            let defects = crate::repair::defects(&self.triangulation, &self.rest, positions);
+            return Repair {
+                positions: positions.clone(),
+                left: defects.clone(),
+                before: defects,
+            };
+        }
+        let is_placed = self.structure.anchored_at() == self.parametrization.positions();
+        let crossings = if is_placed {
+            Crossings::Stay
+        } else {
+            Crossings::Part(Some(self.matcher.target().as_ref()))
+        };
+        crate::repair(&self.triangulation, &self.rest, positions, held, crossings)
     }
 
     /// The network behind the positions, as a map in the target's coordinates; none for explicit vertices, and once

@@ -11,7 +11,7 @@ use mesh_loss::{FoldBarrier, LocalShape};
 
 pub(crate) use judge::{Broken, Judge, Reach, Surroundings};
 
-use crate::untangle::{crossings, untangle};
+use crate::untangle::{self, Untangled};
 
 /// A patch grows up to this many rings around what is broken.
 const MAX_RINGS: usize = 8;
@@ -46,6 +46,16 @@ pub struct Repair {
     pub left: Defects,
 }
 
+/// What becomes of crossings.
+#[derive(Clone, Copy)]
+pub enum Crossings<'t> {
+    /// They are taken out. Where a target is given, in the same coordinates, no patch comes farther from it to be free than
+    /// the farthest vertex of the whole surface, or than a hundredth of its longest side: such crossings are left.
+    Part(Option<&'t dyn TargetSurface>),
+    /// They stay.
+    Stay,
+}
+
 /// What is broken in a mesh that was not at rest.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Defects {
@@ -77,38 +87,44 @@ impl Defects {
 ///
 /// A patch that does not get better by a small motion stays as it was. All else stays, to the bit.
 ///
-/// The vertices of `held`, such as those of landmarks, stay where they are. Where a target is given, in the same coordinates,
-/// no patch comes farther from it to be free of crossings than the worst place of the whole surface, or than a hundredth of
-/// its longest side: such crossings are left.
+/// The vertices of `held`, such as those of landmarks, stay where they are.
 pub fn repair(
     triangulation: &Arc<Triangulation>,
     rest: &Positions,
     x: &Positions,
     held: &[VertexId],
-    target: Option<&dyn TargetSurface>,
+    crossings: Crossings<'_>,
 ) -> Repair {
     let mut held = held.to_vec();
     held.sort_unstable();
     let judge = Judge::new(triangulation, rest);
-    let crossing = crossings(triangulation, rest, x);
+    let crossing = untangle::crossings(triangulation, rest, x);
     let before = Defects {
         crossings: in_full(&crossing),
         ..judge.defects(&judge.broken(x))
     };
-    let unfolded = unfolded(&judge, triangulation, x, &held);
-    let crossing = if unfolded.0 == *x {
+    let (positions, broken) = unfolded(&judge, triangulation, x, &held);
+    let left = if positions == *x {
         crossing
     } else {
-        crossings(triangulation, rest, &unfolded.0)
+        untangle::crossings(triangulation, rest, &positions)
     };
-    let untangled = untangle(&judge, unfolded, crossing, &held, target);
+    let shape = Untangled {
+        positions,
+        broken,
+        left,
+    };
+    let shape = match crossings {
+        Crossings::Part(target) => untangle::untangle(&judge, shape, &held, target),
+        Crossings::Stay => shape,
+    };
     Repair {
         before,
         left: Defects {
-            crossings: in_full(&untangled.left),
-            ..judge.defects(&untangled.broken)
+            crossings: in_full(&shape.left),
+            ..judge.defects(&shape.broken)
         },
-        positions: untangled.positions,
+        positions: shape.positions,
     }
 }
 
@@ -301,7 +317,7 @@ pub(crate) fn defects(
 ) -> Defects {
     let judge = Judge::new(triangulation, rest);
     Defects {
-        crossings: in_full(&crossings(triangulation, rest, x)),
+        crossings: in_full(&untangle::crossings(triangulation, rest, x)),
         ..judge.defects(&judge.broken(x))
     }
 }
@@ -327,7 +343,7 @@ mod tests {
     fn a_shape_without_defects_stays_to_the_bit() {
         let (triangulation, rest) = sphere(8);
         let x = rest.map(|p| p * 3.0);
-        let repair = repair(&triangulation, &rest, &x, &[], None);
+        let repair = repair(&triangulation, &rest, &x, &[], Crossings::Part(None));
         assert_eq!(repair.positions, x);
         assert!(repair.before.is_empty() && repair.left.is_empty());
     }
@@ -340,7 +356,7 @@ mod tests {
         let [a, b] = [v, w].map(|v| triangulation.edges().iter().find(|e| e[0] == v).unwrap()[1]);
         x[v] = x[v] + (x[a] - x[v]) * 1.6;
         x[w] = x[w] + (x[b] - x[w]) * 1.6;
-        let repair = repair(&triangulation, &rest, &x, &[], None);
+        let repair = repair(&triangulation, &rest, &x, &[], Crossings::Part(None));
         assert!(!repair.before.is_empty());
         assert!(repair.left.is_empty(), "{:?}", repair.left);
         let true_place = rest.map(|p| p * 2.0);
@@ -361,7 +377,7 @@ mod tests {
         for [v, w] in triangulation.edges().iter().copied().step_by(4001) {
             (x[v], x[w]) = (x[w], x[v]);
         }
-        let repair = repair(&triangulation, &rest, &x, &[], None);
+        let repair = repair(&triangulation, &rest, &x, &[], Crossings::Part(None));
         assert!(!repair.before.is_empty());
         assert!(repair.left.is_empty(), "{:?}", repair.left);
     }

@@ -2,9 +2,9 @@
 
 use mesh_core::{nearest_rotation, Positions, Triangulation, UnionFind, Vector3, VertexId};
 
-use nalgebra::Matrix3;
-use mesh_operators::SpdSolver;
 use mesh_operators::nalgebra_sparse::{CooMatrix, CsrMatrix};
+use mesh_operators::SpdSolver;
+use nalgebra::Matrix3;
 
 use crate::repair::grown;
 
@@ -74,8 +74,7 @@ impl<'a> Carrier<'a> {
     fn turn(&self, v: VertexId, x: &Positions) -> Matrix3<f64> {
         let mut covariance = Matrix3::zeros();
         for &w in self.triangulation.vertex_neighbours(v) {
-            covariance +=
-                (x[w] - x[v]) * self.weight(v, w) * self.edge_at_rest(v, w).transpose();
+            covariance += (x[w] - x[v]) * self.weight(v, w) * self.edge_at_rest(v, w).transpose();
         }
         nearest_rotation(&covariance)
     }
@@ -120,7 +119,11 @@ impl<'p> Part<'p> {
         for _ in 0..STEPS {
             let around = grown(carrier.triangulation, self.free, 1);
             let turns: Vec<_> = around.iter().map(|&v| carrier.turn(v, x)).collect();
-            let turn = |v: &VertexId| around.binary_search(v).map_or(similarity.rotation, |row| turns[row]);
+            let turn = |v: &VertexId| {
+                around
+                    .binary_search(v)
+                    .map_or(similarity.rotation, |row| turns[row])
+            };
             let pull = |&v: &VertexId| {
                 let mut sum = Vector3::zeros();
                 for w in carrier.triangulation.vertex_neighbours(v) {

@@ -114,8 +114,7 @@ impl<'a, 'u> Case<'a, 'u> {
         self.give_back(&mut y, &left);
         let excess = all.excess(&self.rows, &self.free, [x, &y]);
         let is_near = far(&self.free, [x, &y]) <= MAX_MOTION * all.size && excess <= all.limit;
-        let is_better =
-            |best: &Candidate| (left.len(), excess) < (best.left.len(), best.excess);
+        let is_better = |best: &Candidate| (left.len(), excess) < (best.left.len(), best.excess);
         (is_near && best.is_none_or(is_better)).then_some(Candidate {
             positions: y,
             left,

@@ -29,7 +29,10 @@ pub(super) fn excess(
         let back = surface.closest_point(&was.point);
         let back = back.map_or(0.0, |hit| hit.distance_squared);
         let is_farther = |d: &f64| *d > was.distance_squared;
-        excess = [there, back].into_iter().filter(is_farther).fold(excess, f64::max);
+        excess = [there, back]
+            .into_iter()
+            .filter(is_farther)
+            .fold(excess, f64::max);
     }
     excess.sqrt()
 }

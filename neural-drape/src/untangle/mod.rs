@@ -64,7 +64,7 @@ pub(crate) fn crossings(
     Detector::new(ground, x).all_crossings(ground, x)
 }
 
-/// Takes the crossings `left` out of a shape, patch by patch, those of few pairs first. What crosses moves against the
+/// Takes crossings out of a shape, patch by patch, those of few pairs first. What crosses moves against the
 /// gradient of the length of the line in which it crosses, while its surroundings relax towards the shape that they had at
 /// rest, until nothing crosses; then every vertex goes back towards where it was and to the target as far as nothing crosses
 /// or folds. So a patch moves no more than it must.
@@ -73,16 +73,10 @@ pub(crate) fn crossings(
 /// farther from the target than it may stays as it was. The vertices of `held`, in order, stay where they are.
 pub(crate) fn untangle(
     judge: &Judge<'_>,
-    (x, broken): (Positions, Broken),
-    left: Vec<[u32; 2]>,
+    mut shape: Untangled,
     held: &[VertexId],
     target: Option<&dyn TargetSurface>,
 ) -> Untangled {
-    let mut shape = Untangled {
-        positions: x,
-        broken,
-        left,
-    };
     if shape.left.is_empty() {
         return shape;
     }
@@ -105,11 +99,7 @@ pub(crate) fn untangle(
 
 /// Vertices within some rings of the triangles that cross: those of each pair, and what touches, are one patch. Each
 /// ascending; patches of few pairs first.
-fn patches(
-    triangulation: &Triangulation,
-    pairs: &[[u32; 2]],
-    rings: usize,
-) -> Vec<Vec<VertexId>> {
+fn patches(triangulation: &Triangulation, pairs: &[[u32; 2]], rings: usize) -> Vec<Vec<VertexId>> {
     let corners = |row: u32| triangulation.triangles()[row as usize];
     let mut sets = UnionFind::new(triangulation.n_vertices());
     let mut crossing = Vec::new();
@@ -248,5 +238,7 @@ impl<'a> Untangler<'a> {
 
 /// How far the farthest of some vertices moves.
 fn far(free: &[VertexId], [x, y]: [&Positions; 2]) -> f64 {
-    free.iter().map(|&v| (y[v] - x[v]).norm()).fold(0.0, f64::max)
+    free.iter()
+        .map(|&v| (y[v] - x[v]).norm())
+        .fold(0.0, f64::max)
 }
