@@ -5,7 +5,7 @@ use std::process::ExitCode;
 use std::str::FromStr;
 
 /// Figures that a requirement may name, in the order of a report.
-const NAMES: [&str; 33] = [
+const NAMES: [&str; 34] = [
     "q_transfer",
     "dirichlet",
     "dirichlet_raw",
@@ -27,6 +27,7 @@ const NAMES: [&str; 33] = [
     "folds",
     "self_intersections",
     "self_intersections_new",
+    "crossings",
     "vertices",
     "faces",
     "opposed_faces",

@@ -27,7 +27,7 @@ fn option_for(note: &Note) -> Option<&'static str> {
             Some("--free, --rigid and --draped decide otherwise, --no-hidden turns this off")
         }
         Note::LeftOut { .. } => Some("--overlap decides otherwise"),
-        Note::Repaired { .. } => Some("setting repair"),
+        Note::Repaired { .. } | Note::Uncrossed { .. } => Some("setting repair"),
         _ => None,
     }
 }
@@ -72,7 +72,7 @@ pub(crate) fn advice(advice: Advice) -> String {
     }
 }
 
-/// An explanation for people: distances part by part, the worst places, what to try.
+/// An explanation for people: distances part by part, the worst places and crossings, what to try.
 pub(crate) fn explanation(explanation: &Explanation) -> String {
     let mut text = String::new();
     if !explanation.regions.is_empty() {
@@ -93,6 +93,12 @@ pub(crate) fn explanation(explanation: &Explanation) -> String {
     for (k, place) in explanation.places.iter().enumerate() {
         let _ = writeln!(text, "  {}. {place}", k + 1);
     }
+    if !explanation.crossings.is_empty() {
+        text += "where the surface runs through itself\n";
+    }
+    for (k, place) in explanation.crossings.iter().enumerate() {
+        let _ = writeln!(text, "  {}. {place}", k + 1);
+    }
     for &tip in &explanation.advice {
         let _ = writeln!(text, "  try: {}", advice(tip));
     }
@@ -104,6 +110,7 @@ pub(crate) fn explanation_json(explanation: &Explanation) -> serde_json::Value {
     let tips: Vec<String> = explanation.advice.iter().map(|&a| advice(a)).collect();
     serde_json::json!({
         "places": explanation.places,
+        "crossings": explanation.crossings,
         "regions": explanation.regions,
         "advice": tips,
     })

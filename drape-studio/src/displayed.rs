@@ -11,7 +11,7 @@ use mesh_core::{
 };
 use mesh_draping::landmarks::{source_symmetry, target_symmetry};
 use mesh_draping::{SnapPoints, Source, Target};
-use mesh_metrics::self_intersections;
+use mesh_metrics::new_crossings;
 
 use crate::buffers::DisplayBuffers;
 use crate::looks::{DisplayedLooks, ShownTriangle};
@@ -28,8 +28,6 @@ pub(crate) struct DisplayedPair {
     pub(crate) target: Arc<DisplayedTarget>,
     /// What is draped.
     pub(crate) shapes: Shapes,
-    /// Pairs of triangles of the source that pass through each other at rest; found once asked for.
-    rest_crossings: Arc<OnceLock<Vec<[usize; 2]>>>,
 }
 
 /// A mesh to deform.
@@ -62,19 +60,13 @@ impl DisplayedPair {
             shapes: Shapes::new(source.source.clone(), target.target.clone()),
             source,
             target,
-            rest_crossings: Arc::default(),
         }
     }
 
     /// How many pairs of triangles pass through each other at `x` and do not at rest.
     pub(crate) fn new_crossings(&self, x: &Positions) -> usize {
         let source = &self.shapes.source;
-        let found = |x: &Positions| self_intersections(source.triangulation(), x);
-        // In order, as they are found.
-        let at_rest = self.rest_crossings.get_or_init(|| found(source.rest()));
-        let now = found(x).into_iter();
-        now.filter(|pair| at_rest.binary_search(pair).is_err())
-            .count()
+        new_crossings(source.triangulation(), source.rest(), x).len()
     }
 }
 

@@ -443,9 +443,8 @@ impl Draping {
         let counterparts = self.counterparts();
         let explanation = {
             let pair = &self.pair;
-            let distances = &report.vertex_distances;
             self.stages.time("explanation", || {
-                crate::explain::explain(pair, &draped, distances, &counterparts)
+                crate::explain::explain(pair, &draped, &report, &counterparts)
             })
         };
         Ok(Outcome {

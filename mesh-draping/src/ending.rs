@@ -1,5 +1,6 @@
 //! What a drape came to, as notes, and what its refinement takes from it.
 
+use mesh_core::{UnionFind, VertexId};
 use mesh_loss::Overlap;
 use neural_drape::{Defects, Drape, OverlapMode, Repair};
 
@@ -45,18 +46,41 @@ pub(crate) fn repaired(end: &Repair, pair: &Pair) -> Vec<Note> {
     let row = |v| pair.source.file_row(v);
     let triangles = pair.source.triangulation().triangles();
     let count = |d: &Defects| d.folds.len() + d.skinny.len();
-    let (n_before, n_left) = (count(&end.before), count(&end.left));
+    let taken_out = |count: &dyn Fn(&Defects) -> usize| {
+        let n = count(&end.before).saturating_sub(count(&end.left));
+        (n > 0).then_some(n)
+    };
     let mut notes = Vec::new();
-    if n_before > n_left {
-        notes.push(Note::Repaired {
-            n: n_before - n_left,
-        });
-    }
+    notes.extend(taken_out(&count).map(|n| Note::Repaired { n }));
+    notes.extend(taken_out(&|d| d.crossings.len()).map(|n| Note::Uncrossed { n }));
     notes.extend(end.left.folds.iter().map(|&ends| Note::FoldLeft {
         rows: ends.map(row),
     }));
     notes.extend(end.left.skinny.iter().map(|&t| Note::SkinnyLeft {
         rows: triangles[t].map(row),
     }));
+    notes.extend(crossings_left(end, pair));
     notes
+}
+
+/// What still crosses, one note for each connected place.
+fn crossings_left(end: &Repair, pair: &Pair) -> Vec<Note> {
+    let triangulation = pair.source.triangulation();
+    let corners = |t: usize| triangulation.triangles()[t];
+    let mut sets = UnionFind::new(triangulation.n_vertices());
+    let mut n_pairs = vec![0; triangulation.n_vertices()];
+    for &[one, two] in &end.left.crossings {
+        for v in corners(one).into_iter().chain(corners(two)) {
+            sets.union(corners(one)[0].index(), v.index());
+        }
+    }
+    for &[one, _] in &end.left.crossings {
+        n_pairs[sets.find(corners(one)[0].index())] += 1;
+    }
+    let places = n_pairs.iter().enumerate().filter(|(_, n)| **n > 0);
+    let note = |(v, &n): (usize, &usize)| Note::CrossingLeft {
+        row: pair.source.file_row(VertexId::new(v)),
+        n,
+    };
+    places.map(note).collect()
 }

@@ -3,7 +3,7 @@
 use std::fmt;
 
 use mesh_core::{measure, FaceId, Landmark, Point3, Positions, TriangleBvh, VertexData, VertexId};
-use mesh_metrics::{percentiles, Counterparts};
+use mesh_metrics::{percentiles, Counterparts, Report};
 use serde::{Serialize, Serializer};
 
 use crate::landmarks::Label;
@@ -15,6 +15,8 @@ const SAME_PLACE: f64 = 0.08;
 const WORTH_NAMING: f64 = 0.01;
 /// How many places are named, each way.
 const N_PLACES: usize = 3;
+/// How many places are named where the surface runs through itself.
+const N_CROSSINGS: usize = 5;
 /// A landmark this near, likewise, gives a place its name.
 const NEAR_LANDMARK: f64 = 0.2;
 /// From this distance on, likewise, one shape probably reaches beyond the other.
@@ -29,6 +31,8 @@ const MAX_REGIONS: usize = 16;
 pub struct Explanation {
     /// The worst places, worst first.
     pub places: Vec<WorstPlace>,
+    /// Where surfaces run through each other that did not at rest, the largest places first.
+    pub crossings: Vec<CrossingPlace>,
     /// Distances of what has a counterpart, all together and part by part.
     pub regions: Vec<RegionDistances>,
     /// What to try.
@@ -45,6 +49,17 @@ pub struct WorstPlace {
     /// Distance in longest sides of the target's box.
     pub distance: f64,
     /// The landmark near it, and how far that is, likewise.
+    pub near: Option<(Label, f64)>,
+}
+
+/// A place where the result runs through itself. `Display` says it in neutral words.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CrossingPlace {
+    /// Where, in the target's coordinates.
+    pub point: Point3,
+    /// Faces that run through others around it.
+    pub n_faces: usize,
+    /// The landmark near it, and how far that is, in longest sides of the target's box.
     pub near: Option<(Label, f64)>,
 }
 
@@ -88,13 +103,47 @@ pub struct RegionDistances {
     pub max: f64,
 }
 
+/// Writes where a place is.
+fn write_place(
+    f: &mut fmt::Formatter<'_>,
+    near: Option<&(Label, f64)>,
+    point: &Point3,
+) -> fmt::Result {
+    if let Some((label, distance)) = near {
+        write!(f, "{:.0} % from {label}, ", 100.0 * distance)?;
+    }
+    let Point3 { coords: p } = point;
+    write!(f, "at ({:.4}, {:.4}, {:.4}): ", p.x, p.y, p.z)
+}
+
+impl fmt::Display for CrossingPlace {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write_place(f, self.near.as_ref(), &self.point)?;
+        let n = self.n_faces;
+        write!(f, "the surface runs through itself there, {n} of its faces")
+    }
+}
+
+impl Serialize for CrossingPlace {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        #[derive(Serialize)]
+        struct Told {
+            text: String,
+            point: [f64; 3],
+            n_faces: usize,
+        }
+        Told {
+            text: self.to_string(),
+            point: self.point.coords.into(),
+            n_faces: self.n_faces,
+        }
+        .serialize(serializer)
+    }
+}
+
 impl fmt::Display for WorstPlace {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        if let Some((label, distance)) = &self.near {
-            write!(f, "{:.0} % from {label}, ", 100.0 * distance)?;
-        }
-        let Point3 { coords: p } = self.point;
-        write!(f, "at ({:.4}, {:.4}, {:.4}): ", p.x, p.y, p.z)?;
+        write_place(f, self.near.as_ref(), &self.point)?;
         let percent = 100.0 * self.distance;
         match self.kind {
             PlaceKind::NotReached => {
@@ -147,25 +196,29 @@ impl Serialize for Advice {
 }
 
 impl Explanation {
-    /// Where the worst places are, in the target's coordinates.
+    /// Where the worst places are and those where the surface runs through itself, in the target's coordinates.
     pub fn marks(&self) -> Vec<Point3> {
-        self.places.iter().map(|p| p.point).collect()
+        let worst = self.places.iter().map(|p| p.point);
+        worst
+            .chain(self.crossings.iter().map(|p| p.point))
+            .collect()
     }
 }
 
-/// Explains a result whose vertices lie `distances` from the target.
+/// Explains a result that was judged.
 pub(crate) fn explain(
     pair: &Pair,
     draped: &Positions,
-    distances: &VertexData<f64>,
+    report: &Report,
     counterparts: &Counterparts,
 ) -> Explanation {
-    let case = Case::new(pair, draped, distances, counterparts);
+    let case = Case::new(pair, draped, &report.vertex_distances, counterparts);
     let mut places = case.of_source();
     places.extend(case.of_target());
     places.sort_by(|a, b| b.distance.total_cmp(&a.distance));
     let advice = case.advice(&places);
     Explanation {
+        crossings: case.crossings(&report.places.self_intersecting_new),
         regions: case.regions(),
         places,
         advice,
@@ -258,6 +311,31 @@ impl<'a> Case<'a> {
             point,
             distance,
         }
+    }
+
+    /// Places where faces run through others: each is a face and all those around it; those with the most come first.
+    fn crossings(&self, faces: &[FaceId]) -> Vec<CrossingPlace> {
+        let mesh = self.pair.source.mesh();
+        let middle = |&f: &FaceId| {
+            let corners = mesh.face_vertices(f).iter();
+            let sum: mesh_core::Vector3 = corners.map(|&v| self.draped[v].coords).sum();
+            Point3::from(sum / mesh.face_vertices(f).len().max(1) as f64)
+        };
+        let mut left: Vec<Point3> = faces.iter().map(middle).collect();
+        let apart = SAME_PLACE * self.side;
+        let mut places = Vec::new();
+        while let Some(&point) = left.first() {
+            let n = left.len();
+            left.retain(|p| (p - point).norm() > apart);
+            places.push(CrossingPlace {
+                near: self.landmark_near(&point),
+                n_faces: n - left.len(),
+                point,
+            });
+        }
+        places.sort_by_key(|place| std::cmp::Reverse(place.n_faces));
+        places.truncate(N_CROSSINGS);
+        places
     }
 
     /// The landmark that gives a place its name.

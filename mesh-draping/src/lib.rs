@@ -65,7 +65,7 @@ pub use background::{Background, BackgroundStatus};
 pub use brush::{Brush, BrushInput, Moves, Stroke};
 pub use draping::{adjusted, Draping};
 pub use error::{Error, MeshProblem};
-pub use explain::{Advice, Explanation, PlaceKind, RegionDistances, WorstPlace};
+pub use explain::{Advice, CrossingPlace, Explanation, PlaceKind, RegionDistances, WorstPlace};
 pub use history::{Curve, History};
 pub use initial::{initial_deformation, InitialMethod, InitialShape};
 pub use note::{Note, Shape};

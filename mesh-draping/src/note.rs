@@ -106,6 +106,18 @@ pub enum Note {
         /// How many.
         n: usize,
     },
+    /// Triangles that ran through each other and do not at rest were parted at the end.
+    Uncrossed {
+        /// How many pairs.
+        n: usize,
+    },
+    /// Surfaces still run through each other at a place, where they do not at rest.
+    CrossingLeft {
+        /// A vertex there: row of the source's file.
+        row: usize,
+        /// How many pairs of triangles.
+        n: usize,
+    },
     /// A fold is left at an edge.
     FoldLeft {
         /// The ends of the edge: rows of the source's file.
@@ -169,9 +181,11 @@ impl fmt::Display for Note {
                     "{percent:.0} % of the {shape} lies beyond the {other} and was left out"
                 )
             }
-            Self::Repaired { .. } | Self::FoldLeft { .. } | Self::SkinnyLeft { .. } => {
-                self.about_defects(f)
-            }
+            Self::Repaired { .. }
+            | Self::Uncrossed { .. }
+            | Self::CrossingLeft { .. }
+            | Self::FoldLeft { .. }
+            | Self::SkinnyLeft { .. } => self.about_defects(f),
         }
     }
 }
@@ -257,6 +271,14 @@ impl Note {
             Self::Repaired { n } => {
                 write!(f, "{n} folded or skinny triangles were taken out at the end")
             }
+            Self::Uncrossed { n } => write!(
+                f,
+                "{n} pairs of triangles that ran through each other were parted at the end"
+            ),
+            Self::CrossingLeft { row, n } => write!(
+                f,
+                "{n} pairs of triangles around vertex {row} still run through each other; a landmark near it may part them"
+            ),
             Self::FoldLeft { rows: [a, b] } => write!(
                 f,
                 "a fold is left at the edge between vertices {a} and {b}; a landmark near it may undo it"
@@ -327,6 +349,8 @@ mod tests {
                 share: 0.25,
             },
             Note::Repaired { n: 3 },
+            Note::Uncrossed { n: 3 },
+            Note::CrossingLeft { row: 1, n: 2 },
             Note::FoldLeft { rows: [1, 2] },
             Note::SkinnyLeft { rows: [1, 2, 3] },
         ];

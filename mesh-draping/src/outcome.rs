@@ -50,7 +50,7 @@ impl Outcome {
         let report = pair.judge(&draped, None)?;
         let counterparts = Counterparts::all(draped.len());
         Ok(Self {
-            explanation: explain(&pair, &draped, &report.vertex_distances, &counterparts),
+            explanation: explain(&pair, &draped, &report, &counterparts),
             pair,
             preset,
             by_landmarks: initial.clone(),

@@ -14,6 +14,7 @@
 //! | angle distortion as Eq. 6 measures it | [`Conformal`] | beyond the paper |
 //! | one-rings turned and scaled only | [`LocalShape`] | beyond the paper |
 //! | sliding along the surface | [`Drift`] | beyond the paper |
+//! | near in space and far along the surface | [`Contact`] | beyond the paper, after Li et al. 2020 |
 //!
 //! [`SurfaceMatcher::resample`] draws samples and finds closest points; it alone changes what the distance terms see.
 //!
@@ -41,6 +42,8 @@
 mod area_kl;
 mod chamfer;
 mod conformal;
+mod contact;
+mod contact_search;
 mod corner_angle;
 mod drift;
 mod flip;
@@ -60,6 +63,8 @@ mod worst_distance;
 pub use area_kl::AreaKl;
 pub use chamfer::Chamfer;
 pub use conformal::Conformal;
+pub use contact::{Contact, ContactPair};
+pub use contact_search::ContactSearch;
 pub use corner_angle::CornerAngle;
 pub use drift::Drift;
 pub use flip::Flip;

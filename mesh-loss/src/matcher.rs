@@ -90,6 +90,11 @@ impl SurfaceMatcher {
         self.attraction = (!is_even).then(|| attraction.clone());
     }
 
+    /// The target, in its own coordinates.
+    pub fn target(&self) -> &Arc<dyn TargetSurface> {
+        &self.target
+    }
+
     /// Whether the mesh ends openly anywhere.
     pub fn has_boundary(&self) -> bool {
         !self.triangulation.boundary().is_empty()

@@ -21,7 +21,7 @@ use crate::q_transfer::{q_transfer, HAUSDORFF_WEIGHT, PAPER_TAU};
 use crate::report::{
     CurveFit, Defects, DistanceSummary, LandmarkFit, LandmarkResidual, Places, Report, TruthError,
 };
-use crate::self_intersection::self_intersections;
+use crate::self_intersection::{new_intersections, self_intersections, without_neighbours};
 
 /// A result to be judged.
 #[derive(Clone, Copy)]
@@ -198,12 +198,8 @@ fn defects(input: &EvaluationInput<'_>) -> (Defects, Places) {
     let folds = folded_edges(triangulation, rest, draped);
     let opposed = opposed_triangles(triangulation, draped, target);
     let crossings = self_intersections(triangulation, draped);
-    let rest_crossings = self_intersections(triangulation, rest);
-    let crossings_new: Vec<_> = crossings
-        .iter()
-        .copied()
-        .filter(|pair| rest_crossings.binary_search(pair).is_err())
-        .collect();
+    let n_crossings = crossings.len();
+    let crossings_new = new_intersections(triangulation, rest, crossings);
 
     let defects = Defects {
         angle_deviation_deg: mean_angle_deviation(triangulation, rest, draped),
@@ -213,8 +209,9 @@ fn defects(input: &EvaluationInput<'_>) -> (Defects, Places) {
         skinny_new: skinny_new.len(),
         folds: folds.len(),
         opposed_faces: opposed.as_ref().map(Vec::len),
-        self_intersections: crossings.len(),
+        self_intersections: n_crossings,
         self_intersections_new: crossings_new.len(),
+        crossings: without_neighbours(triangulation, &crossings_new).len(),
     };
     let faces = |triangles: Vec<usize>| faces_of(triangulation, triangles);
     let places = Places {

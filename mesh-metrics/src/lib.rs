@@ -8,7 +8,7 @@
 //! | measure them over what has a counterpart on the other | [`Counterparts::distances`] |
 //! | sum them up | [`chamfer()`], [`hausdorff_sampled`], [`directed_hausdorff_sampled`], [`percentiles`] |
 //! | measure distortion | [`dirichlet_unit_area`], [`dirichlet_energy`], [`face_stretch`], [`mean_angle_deviation`] |
-//! | find defects | [`folded_edges`], [`skinny_triangles`], [`triangle_qualities`], [`opposed_triangles`], [`self_intersections`] |
+//! | find defects | [`folded_edges`], [`skinny_triangles`], [`triangle_qualities`], [`opposed_triangles`], [`self_intersections`], [`new_crossings`] |
 //! | bring shapes to one size | [`common_frame`], [`own_frame`], [`total_area`] |
 //!
 //! Polygons are measured on the triangles of [`mesh_core::Triangulation`], chosen once at rest. Another judge may cut
@@ -48,7 +48,7 @@ pub use q_transfer::{q_transfer, HAUSDORFF_WEIGHT, PAPER_TAU};
 pub use report::{
     CurveFit, Defects, DistanceSummary, LandmarkFit, LandmarkResidual, Places, Report, TruthError,
 };
-pub use self_intersection::self_intersections;
+pub use self_intersection::{new_crossings, self_intersections};
 
 pub use mesh_core;
 

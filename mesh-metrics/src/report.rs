@@ -87,6 +87,8 @@ pub struct Defects {
     pub self_intersections: usize,
     /// Those of them that did not at rest.
     pub self_intersections_new: usize,
+    /// Those of these that share no corner ([`crate::new_crossings`]).
+    pub crossings: usize,
 }
 
 /// How well the landmarks are met that were marked one by one.
@@ -197,6 +199,7 @@ impl Report {
                 "self_intersections_new",
                 defects.self_intersections_new as f64,
             ),
+            ("crossings", defects.crossings as f64),
             ("vertices", self.n_vertices as f64),
             ("faces", self.n_faces as f64),
         ];

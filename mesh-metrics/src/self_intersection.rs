@@ -32,6 +32,46 @@ pub fn self_intersections(triangulation: &Triangulation, x: &Positions) -> Vec<[
     pairs.concat()
 }
 
+/// The pairs of triangles without a common corner that pass through each other at `x` and did not at `rest`: rows, the lower
+/// first, in order.
+///
+/// This is what other programs count, which cannot tell neighbours that pierce each other from neighbours that touch.
+pub fn new_crossings(
+    triangulation: &Triangulation,
+    rest: &Positions,
+    x: &Positions,
+) -> Vec<[usize; 2]> {
+    let pairs = self_intersections(triangulation, x);
+    without_neighbours(
+        triangulation,
+        &new_intersections(triangulation, rest, pairs),
+    )
+}
+
+/// Those pairs that do not pass through each other at `rest`.
+pub(crate) fn new_intersections(
+    triangulation: &Triangulation,
+    rest: &Positions,
+    mut pairs: Vec<[usize; 2]>,
+) -> Vec<[usize; 2]> {
+    let at_rest = |t: usize| triangulation.triangles()[t].map(|v| rest[v]);
+    pairs.retain(|&[one, two]| !is_intersecting(&at_rest(one), &at_rest(two)));
+    pairs
+}
+
+/// Those pairs that share no corner.
+pub(crate) fn without_neighbours(
+    triangulation: &Triangulation,
+    pairs: &[[usize; 2]],
+) -> Vec<[usize; 2]> {
+    let triangles = triangulation.triangles();
+    let is_apart = |[one, two]: &[usize; 2]| {
+        let other = &triangles[*two];
+        !triangles[*one].iter().any(|v| other.contains(v))
+    };
+    pairs.iter().copied().filter(is_apart).collect()
+}
+
 fn is_intersecting(s: &[Point3; 3], t: &[Point3; 3]) -> bool {
     let pierces = |s: &[Point3; 3], t| (0..3).any(|k| is_piercing(s[k], s[(k + 1) % 3], t));
     is_straddling(s, t) && is_straddling(t, s) && (pierces(s, t) || pierces(t, s))
@@ -139,6 +179,30 @@ mod tests {
             faces: vec![vec![0, 1, 2], vec![0, 3, 4]],
         };
         assert_eq!(pairs_of(&[soup]), [[0, 1]]);
+    }
+
+    #[test]
+    fn crossings_are_new_and_between_triangles_without_a_common_corner() {
+        let ball = shapes::icosphere(2);
+        let n = ball.positions.len();
+        let mut both = ball.clone();
+        let moved = |f: &Vec<u32>| f.iter().map(|v| v + n as u32).collect::<Vec<_>>();
+        both.faces.extend(ball.faces.iter().map(moved));
+        both.positions.extend(&ball.positions);
+        let (mesh, x) = both.into_halfedge().unwrap();
+        let triangulation = Triangulation::new(&mesh, &x);
+        let apart = |by: f64| -> Positions {
+            // Not along an axis: edges of mirror images would meet edges, which is touching.
+            let shift = Vector3::new(by, 0.1, 0.03);
+            let by = |row: usize| if row < n { Vector3::zeros() } else { shift };
+            let rows = x.iter().enumerate();
+            rows.map(|(row, p)| p + by(row)).collect()
+        };
+        let (rest, crossed) = (apart(3.0), apart(0.7));
+        let crossings = new_crossings(&triangulation, &rest, &crossed);
+        assert_eq!(crossings, self_intersections(&triangulation, &crossed));
+        assert!(!crossings.is_empty());
+        assert!(new_crossings(&triangulation, &crossed, &crossed).is_empty());
     }
 
     #[test]

@@ -112,6 +112,7 @@ fn write_defects(f: &mut fmt::Formatter<'_>, defects: &Defects) -> fmt::Result {
     if let Some(n) = defects.opposed_faces {
         count(f, "triangles facing inwards", n)?;
     }
+    count(f, "crossings, new", defects.crossings)?;
     writeln!(
         f,
         "{:<26}{:>10}   {} in all",

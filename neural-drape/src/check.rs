@@ -26,6 +26,14 @@ impl DrapeConfig {
             Setting::share("skinny_threshold", self.skinny_threshold),
             Setting::cosine("fold_limit", self.fold_limit),
         ];
+        let contact = self.contact.iter();
+        settings.extend(contact.flat_map(|contact| {
+            [
+                Setting::share("contact.from", contact.from),
+                Setting::not_negative("contact.weight", contact.weight),
+                Setting::not_negative("contact.gap", contact.gap),
+            ]
+        }));
         settings.extend(self.learning_rate.settings());
         settings.extend(self.sampling.settings());
         let stages = self.stages.iter().enumerate();

@@ -4,6 +4,7 @@ use mesh_core::Triangulation;
 use mesh_loss::{Overlap, SamplingConfig};
 use serde::{Deserialize, Serialize};
 
+use crate::contact::ContactConfig;
 use crate::network::{NetworkConfig, Shapes};
 use crate::schedule::{LearningRate, Stage};
 use crate::vertices::{Vertices, VerticesConfig};
@@ -37,6 +38,9 @@ pub struct DrapeConfig {
     pub fold_limit: f64,
     /// Whether [`crate::Drape::finish`] takes out new folds and new skinny triangles.
     pub repair: bool,
+    /// How the surface is kept from running through itself; none: it is not, until [`crate::Drape::finish`].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub contact: Option<ContactConfig>,
     /// The run, stage after stage.
     pub stages: Vec<Stage>,
 }

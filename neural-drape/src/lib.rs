@@ -7,7 +7,7 @@
 //! | keep parts of the source free or rigid | [`Regions`], [`Drape::set_regions`] |
 //! | choose how | [`DrapeConfig`] and its presets |
 //! | move the vertices by a map of your own | [`Parametrization`], [`Drape::with_parametrization`] |
-//! | take out folds and skinny triangles at the end | [`Drape::finish`], [`repair`] |
+//! | take out folds, skinny triangles and crossings at the end | [`Drape::finish`], [`repair`] |
 //! | go on with other landmarks | [`Drape::set_landmarks`], [`Drape::displace`], [`Drape::extend`] |
 //! | keep a drape in progress | [`Drape::state`], [`Drape::restore`] |
 //! | do to other points what was done to the source | [`Warp::new`], [`Warp::apply`] |
@@ -51,6 +51,7 @@
 
 mod check;
 mod config;
+mod contact;
 mod coverage;
 mod drape;
 mod error;
@@ -67,19 +68,21 @@ mod setting;
 mod state;
 mod studies;
 mod trial;
+mod untangle;
 mod vertices;
 mod warp;
 
 pub use config::{
     AngleReference, Descent, DrapeConfig, OverlapMode, ParametrizationConfig, Sampling,
 };
+pub use contact::ContactConfig;
 pub use drape::{Drape, StepReport};
 pub use error::DrapeError;
 pub use input::DrapeInput;
 pub use objective::TermReport;
 pub use parametrization::Parametrization;
 pub use regions::Regions;
-pub use repair::{repair, Defects, Repair};
+pub use repair::{repair, Crossings, Defects, Repair};
 pub use schedule::{LearningRate, Stage, Weights};
 pub use state::{DrapeState, StateReader, StateWriter};
 pub use studies::Study;

@@ -73,6 +73,7 @@ impl DrapeConfig {
             skinny_threshold: 0.2,
             fold_limit: 0.3,
             repair: true,
+            contact: None,
             stages: standard_stages(330, 670),
         }
     }
@@ -159,6 +160,7 @@ impl DrapeConfig {
             skinny_threshold: 0.1,
             fold_limit: 0.3,
             repair: false,
+            contact: None,
             stages: vec![constant(1000, first), constant(500, second)],
         }
     }

@@ -1,6 +1,6 @@
 //! Settings for a shape that is nearly draped.
 
-use crate::{DrapeConfig, LearningRate, ParametrizationConfig, Stage};
+use crate::{ContactConfig, DrapeConfig, LearningRate, ParametrizationConfig, Stage};
 
 /// The largest step of the refinement beside that of the run.
 const STEP: f64 = 0.3;
@@ -18,6 +18,10 @@ impl DrapeConfig {
                 to,
             }];
         }
+        config.contact = self.contact.map(|contact| ContactConfig {
+            from: 0.0,
+            ..contact
+        });
         config.learning_rate = LearningRate {
             peak: STEP * self.learning_rate.peak,
             warm_up: 0,

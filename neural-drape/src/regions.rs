@@ -156,6 +156,13 @@ impl Guidance {
         &self.attraction
     }
 
+    /// Vertices that move as bodies.
+    pub(crate) fn rigid(&self) -> impl Iterator<Item = VertexId> + '_ {
+        self.bodies
+            .iter()
+            .flat_map(|body| body.vertices.iter().copied())
+    }
+
     /// Notes which vertices have pairs, for [`Follow::All`]; where both shapes are whole, all have.
     pub(crate) fn note(&mut self, matches: &Matches, overlap: Overlap) {
         if self.is_trivial && !overlap.mesh_exceeds {

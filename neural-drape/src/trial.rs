@@ -51,6 +51,7 @@ impl DrapeConfig {
         let mut config = Self {
             stages: stages.collect(),
             repair: false,
+            contact: None,
             ..self.clone()
         };
         config.sampling.n_samples = N_SAMPLES;

@@ -3,6 +3,9 @@
 use std::path::PathBuf;
 use std::process::ExitCode;
 
+use mesh_draping::mesh_core::{Point3, Positions};
+use mesh_draping::mesh_metrics::Report;
+use mesh_draping::Pair;
 use mesh_render::{Gallery, Image, View, DISTANCE_AT_TOP};
 
 use crate::args::{read_truth, Inputs, PipeArgs, ViewArgs, WeldArgs};
@@ -30,7 +33,7 @@ pub(crate) struct Args {
     /// Print JSON
     #[arg(long)]
     json: bool,
-    /// Draw target, result and distances into a PNG file
+    /// Draw target, result and distances, with dots where it runs through itself, into a PNG file
     #[arg(long, value_name = "PNG")]
     render: Option<PathBuf>,
     #[command(flatten)]
@@ -75,11 +78,13 @@ pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
     }
     if let Some(path) = &args.render {
         let gallery = Gallery::new(&pair, &draped, args.view.up, PICTURE_SIZE)?;
+        let distances = &report.vertex_distances;
+        let marks = crossing_places(&pair, &draped, &report);
         let row = |view| {
             Image::row(&[
                 gallery.target(view),
                 gallery.result(&draped, view),
-                gallery.heat(&draped, &report.vertex_distances, DISTANCE_AT_TOP, view),
+                gallery.marked_heat(&draped, distances, DISTANCE_AT_TOP, &marks, view),
             ])
         };
         let rows: Vec<Image> = args
@@ -94,4 +99,11 @@ pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
         .require
         .as_ref()
         .map_or(ExitCode::SUCCESS, |r| r.verdict(&report.figures())))
+}
+
+/// A corner of each face that runs through another and did not at rest.
+fn crossing_places(pair: &Pair, draped: &Positions, report: &Report) -> Vec<Point3> {
+    let faces = report.places.self_intersecting_new.iter();
+    let corner = |&face| pair.source.mesh().face_vertices(face).first();
+    faces.filter_map(corner).map(|&v| draped[v]).collect()
 }

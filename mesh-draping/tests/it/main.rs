@@ -2,6 +2,7 @@
 
 mod background;
 mod brush;
+mod contact;
 mod curves;
 mod interactive;
 mod parts;

@@ -8,9 +8,9 @@ use mesh_core::{
     TriangleSoup, Triangulation, UnitFrame, Vector3, VertexData, VertexId,
 };
 use mesh_loss::{
-    AreaKl, Chamfer, Conformal, CornerAngle, Drift, Flip, FoldBarrier, LandmarkDistance,
-    LocalShape, Loss, Matches, NormalAgreement, SamplingConfig, SurfaceMatcher, TriangleQuality,
-    WorstDistance,
+    AreaKl, Chamfer, Conformal, Contact, ContactPair, CornerAngle, Drift, Flip, FoldBarrier,
+    LandmarkDistance, LocalShape, Loss, Matches, NormalAgreement, SamplingConfig, SurfaceMatcher,
+    TriangleQuality, WorstDistance,
 };
 use proptest::prelude::*;
 
@@ -144,6 +144,20 @@ proptest! {
         for term in terms {
             assert_gradient(term, &s.moved, &mut s.rng)?;
         }
+    }
+
+    #[test]
+    fn contact(shape in 0..5usize, seed in 0..10_000u64) {
+        let mut s = setup(shape, seed, 0.2);
+        // Every vertex with a triangle that it is no corner of, on either side.
+        let triangles = s.triangulation.triangles();
+        let pairs = s.triangulation.vertices().filter_map(|vertex| {
+            let triangle = *triangles.iter().find(|t| !t.contains(&vertex))?;
+            let side = if vertex.index() % 2 == 0 { 1.0 } else { -1.0 };
+            Some(ContactPair { vertex, triangle, side, gap: 0.9, share: 0.3 })
+        });
+        let contact = Contact { pairs: pairs.collect() };
+        assert_gradient(&contact, &s.moved, &mut s.rng)?;
     }
 
     #[test]

@@ -170,6 +170,7 @@ fn cards(run: &Outcome, seconds: Option<f64>) -> String {
         ("Dirichlet, 1 is undistorted", format!("{:.3}", r.dirichlet)),
         ("new folds", r.defects.folds.to_string()),
         ("new skinny faces", r.defects.skinny_new.to_string()),
+        ("new crossings", r.defects.crossings.to_string()),
     ];
     cards.extend(
         r.landmarks
@@ -207,8 +208,10 @@ fn warnings(warnings: &[String]) -> String {
 fn worst_places(run: &Outcome) -> String {
     let explanation = &run.explanation;
     let places = explanation.places.iter().map(ToString::to_string);
+    let crossings = explanation.crossings.iter().map(ToString::to_string);
     let advice = explanation.advice.iter().map(|a| format!("try: {a}"));
     let items: String = places
+        .chain(crossings)
         .chain(advice)
         .map(|text| format!("<li>{}</li>", escape(&text)))
         .collect();

@@ -3,7 +3,7 @@
 mod changes;
 mod resume;
 
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 
 use mesh_core::sampling::SeededRng;
 use mesh_core::{
@@ -12,13 +12,14 @@ use mesh_core::{
 use mesh_loss::{Beyond, Matches, Overlap, SurfaceMatcher};
 
 use crate::config::{Descent, DrapeConfig};
+use crate::contact::Apart;
 use crate::coverage::{mark_uncovered, Pairing, Target, FAR_BEYOND, N_BEYOND};
 use crate::input::check_length;
 use crate::network::{NetworkMap, Shapes};
 use crate::objective::{self, DistanceLoss, StructuralLoss, TermReport};
 use crate::regions::{Follow, Guidance, Regions};
 use crate::schedule::Weights;
-use crate::{DrapeError, DrapeInput, Parametrization, Repair};
+use crate::{Crossings, DrapeError, DrapeInput, Parametrization, Repair};
 
 /// So many times in a run, parts that nothing attracts follow the rest.
 const N_FOLLOWS: usize = 5;
@@ -54,12 +55,22 @@ pub struct Drape {
     initial: Positions,
     is_uncovered: VertexData<bool>,
     guidance: Guidance,
+    apart: Option<Apart>,
     iteration: usize,
     n_iterations: usize,
     stage_starts: Vec<usize>,
     gradient: VertexData<Vector3>,
     rng: SeededRng,
     profile: Profile,
+    /// What [`Self::finish`] came to when it was asked last.
+    ended: Mutex<Option<End>>,
+}
+
+/// The last stage, and what it was computed from.
+struct End {
+    positions: Positions,
+    held: Vec<VertexId>,
+    repair: Repair,
 }
 
 impl Drape {
@@ -132,6 +143,9 @@ impl Drape {
             landmarks: Vec::new(),
             matcher,
             structure: StructuralLoss::new(input.triangulation, input.rest, &initial, &config),
+            apart: config
+                .contact
+                .map(|contact| Apart::new(contact, input.triangulation, input.rest)),
             triangulation: Arc::clone(input.triangulation),
             rest: Arc::clone(input.rest),
             iteration: 0,
@@ -141,6 +155,7 @@ impl Drape {
             initial,
             rng,
             profile: Profile::off(),
+            ended: Mutex::default(),
             config,
         };
         drape.set_landmarks(input.landmarks)?;
@@ -238,21 +253,49 @@ impl Drape {
         marked.flat_map(|l| l.source.vertices)
     }
 
-    /// The result: the positions, without the new folds and new skinny triangles that can be taken out if the settings
-    /// ask for it ([`crate::repair`]). The drape stays as it is and can go on.
+    /// What the last stage leaves where it is: vertices of landmarks and of rigid bodies.
+    fn held(&self) -> Vec<VertexId> {
+        self.marked().chain(self.guidance.rigid()).collect()
+    }
+
+    /// The result: the positions, without the new folds, skinny triangles and crossings that can be taken out if the settings
+    /// ask for it ([`crate::repair`]). The drape stays as it is and can go on. Asked again, it is not computed again.
+    ///
+    /// Crossings stay in a shape that was moved by [`Self::displace`] after the last step: it is as someone wants it.
     pub fn finish(&self) -> Repair {
         let positions = self.positions();
-        if self.config.repair {
-            let held: Vec<VertexId> = self.marked().collect();
-            crate::repair(&self.triangulation, &self.rest, &positions, &held)
-        } else {
-            let defects = crate::repair::defects(&self.triangulation, &self.rest, &positions);
-            Repair {
-                positions,
-                left: defects.clone(),
-                before: defects,
+        let held = self.held();
+        let mut last = self.ended.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(end) = last.as_ref() {
+            if end.positions == positions && end.held == held {
+                return end.repair.clone();
             }
         }
+        let repair = self.last_stage(&positions, &held);
+        *last = Some(End {
+            repair: repair.clone(),
+            positions,
+            held,
+        });
+        repair
+    }
+
+    fn last_stage(&self, positions: &Positions, held: &[VertexId]) -> Repair {
+        if !self.config.repair {
+            let defects = crate::repair::defects(&self.triangulation, &self.rest, positions);
+            return Repair {
+                positions: positions.clone(),
+                left: defects.clone(),
+                before: defects,
+            };
+        }
+        let is_placed = self.structure.anchored_at() == self.parametrization.positions();
+        let crossings = if is_placed {
+            Crossings::Stay
+        } else {
+            Crossings::Part(Some(self.matcher.target().as_ref()))
+        };
+        crate::repair(&self.triangulation, &self.rest, positions, held, crossings)
     }
 
     /// The network behind the positions, as a map in the target's coordinates; none for explicit vertices, and once
@@ -325,8 +368,14 @@ impl Drape {
 
     /// Adds λ dL_s/dx at the present positions (Eq. 3), and the penalty of Eq. 4.
     fn add_structural_loss(&mut self, weights: &Weights) -> Vec<TermReport> {
-        let terms = self.structure.terms(weights);
         let x = self.parametrization.positions();
+        if let Some(apart) = &mut self.apart {
+            let (done, all) = (self.iteration, self.n_iterations);
+            self.profile
+                .time("contact search", || apart.update(done, all, x));
+        }
+        let mut terms = self.structure.terms(weights).to_vec();
+        terms.extend(self.apart.as_ref().map(Apart::term));
         objective::accumulate(&terms, x, &mut self.gradient, &mut self.profile)
     }
 

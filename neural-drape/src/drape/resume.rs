@@ -19,6 +19,9 @@ impl Drape {
             state.points(self.structure.anchored_at());
             self.guidance.save(state);
             self.parametrization.save(state);
+            if let Some(apart) = &self.apart {
+                apart.save(state);
+            }
         })
     }
 
@@ -48,6 +51,9 @@ impl Drape {
         self.structure.anchor(&self.triangulation, &anchor);
         self.guidance.restore(&mut reader)?;
         self.parametrization.restore(&mut reader)?;
+        if let Some(apart) = &mut self.apart {
+            apart.restore(self.gradient.len(), &mut reader)?;
+        }
         reader.finish()
     }
 }

@@ -14,7 +14,7 @@ const FOLD_COSINE: f64 = -0.5;
 const SKINNY_QUALITY: f64 = 0.1;
 
 /// Tells what is broken that was not at rest, however the polygons are cut.
-pub(super) struct Judge<'a> {
+pub(crate) struct Judge<'a> {
     rest: &'a Positions,
     pub(super) cuts: Vec<Cut>,
 }
@@ -27,7 +27,7 @@ pub(super) struct Cut {
 
 /// What is broken: rows of the edges of each cut, and of the triangles of the first; each ascending.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct Broken {
+pub(crate) struct Broken {
     folds: Vec<Vec<u32>>,
     skinny: Vec<u32>,
 }
@@ -45,10 +45,10 @@ impl Broken {
 }
 
 /// Edges and triangles that can break or mend when some vertices move: like [`Broken`].
-pub(super) struct Reach(Broken);
+pub(crate) struct Reach(Broken);
 
 impl<'a> Judge<'a> {
-    pub(super) fn new(triangulation: &Arc<Triangulation>, rest: &'a Positions) -> Self {
+    pub(crate) fn new(triangulation: &Arc<Triangulation>, rest: &'a Positions) -> Self {
         let simple = triangulation.simply_cut().map(Arc::new);
         let cuts = std::iter::once(Arc::clone(triangulation)).chain(simple);
         Self {
@@ -57,8 +57,18 @@ impl<'a> Judge<'a> {
         }
     }
 
+    /// The shape at rest.
+    pub(crate) fn rest(&self) -> &'a Positions {
+        self.rest
+    }
+
+    /// The triangles by which skinny ones are told.
+    pub(crate) fn triangulation(&self) -> &Arc<Triangulation> {
+        &self.cuts[0].triangulation
+    }
+
     /// What is broken at `x`.
-    pub(super) fn broken(&self, x: &Positions) -> Broken {
+    pub(crate) fn broken(&self, x: &Positions) -> Broken {
         let triangles = 0..self.cuts[0].triangulation.len() as u32;
         Broken {
             folds: self.cuts.iter().map(|cut| cut.folds(x)).collect(),
@@ -67,7 +77,7 @@ impl<'a> Judge<'a> {
     }
 
     /// What is broken when the vertices of `reach` have moved to `x`, from where `before` was.
-    pub(super) fn broken_after(&self, before: &Broken, x: &Positions, reach: &Reach) -> Broken {
+    pub(crate) fn broken_after(&self, before: &Broken, x: &Positions, reach: &Reach) -> Broken {
         let folds = self.cuts.iter().zip(&before.folds).zip(&reach.0.folds);
         let folds = folds.map(|((cut, before), reach)| {
             let is_folded = |&row: &u32| cut.is_folded_at(row, x);
@@ -80,8 +90,8 @@ impl<'a> Judge<'a> {
         }
     }
 
-    /// The broken edges by their vertices, in order, and the skinny triangles.
-    pub(super) fn defects(&self, broken: &Broken) -> Defects {
+    /// The broken edges by their vertices, in order, and the skinny triangles; no crossings.
+    pub(crate) fn defects(&self, broken: &Broken) -> Defects {
         let edges = self.cuts.iter().zip(&broken.folds);
         let edges = edges.flat_map(|(cut, rows)| rows.iter().map(|&row| cut.edge(row).vertices));
         let mut folds: Vec<[VertexId; 2]> = edges.collect();
@@ -90,11 +100,12 @@ impl<'a> Judge<'a> {
         Defects {
             folds,
             skinny: broken.skinny.iter().map(|&t| t as usize).collect(),
+            crossings: Vec::new(),
         }
     }
 
     /// Corners of all that is broken, in order.
-    pub(super) fn vertices(&self, broken: &Broken) -> Vec<VertexId> {
+    pub(crate) fn vertices(&self, broken: &Broken) -> Vec<VertexId> {
         let folded = self.cuts.iter().zip(&broken.folds).flat_map(|(cut, rows)| {
             let triangles = rows.iter().flat_map(|&row| cut.edge(row).triangles);
             triangles.flat_map(|t| cut.triangulation.triangles()[t])
@@ -108,7 +119,7 @@ impl<'a> Judge<'a> {
     }
 
     /// What keeps edges from folding, in every cut.
-    pub(super) fn barriers(&self, limit: f64) -> Vec<FoldBarrier> {
+    pub(crate) fn barriers(&self, limit: f64) -> Vec<FoldBarrier> {
         let barrier = |cut: &Cut| FoldBarrier::new(&cut.triangulation, self.rest, limit);
         self.cuts.iter().map(barrier).collect()
     }
@@ -156,14 +167,14 @@ impl Cut {
 }
 
 /// What lies around each vertex, for all cuts.
-pub(super) struct Surroundings<'a> {
+pub(crate) struct Surroundings<'a> {
     judge: &'a Judge<'a>,
     /// For each triangle of each cut the rows of its edges.
     edges_at: Vec<Rows<u32>>,
 }
 
 impl<'a> Surroundings<'a> {
-    pub(super) fn new(judge: &'a Judge<'a>) -> Self {
+    pub(crate) fn new(judge: &'a Judge<'a>) -> Self {
         let of_cut = |cut: &Cut| {
             let sides = (0..).zip(&cut.edges);
             let sides = sides.flat_map(|(e, edge)| edge.triangles.map(|t| (t, e)));
@@ -176,7 +187,7 @@ impl<'a> Surroundings<'a> {
     }
 
     /// What can break or mend when `free` moves.
-    pub(super) fn reach(&self, free: &[VertexId]) -> Reach {
+    pub(crate) fn reach(&self, free: &[VertexId]) -> Reach {
         let of_cut = |(cut, edges_at): (&Cut, &Rows<u32>)| {
             let around = |&v: &VertexId| cut.triangulation.vertex_triangles(v);
             let triangles = in_order(free.iter().flat_map(around));
@@ -197,7 +208,7 @@ impl<'a> Surroundings<'a> {
     }
 
     /// The least cosine at an edge of the patch that was not folded at rest.
-    pub(super) fn sharpest(&self, x: &Positions, patch: &[VertexId]) -> f64 {
+    pub(crate) fn sharpest(&self, x: &Positions, patch: &[VertexId]) -> f64 {
         let reach = self.reach(patch);
         let of_cut = |(cut, rows): (&Cut, &Vec<u32>)| {
             let edges = rows.iter().map(|&row| cut.edge(row));

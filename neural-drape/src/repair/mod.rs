@@ -1,13 +1,17 @@
-//! The last stage: no new fold, no new skinny triangle.
+//! The last stage: no new fold, no new skinny triangle, no new crossing.
 
 mod judge;
 
 use std::sync::Arc;
 
-use mesh_core::{Point3, Positions, Triangulation, UnitFrame, Vector3, VertexData, VertexId};
+use mesh_core::{
+    Point3, Positions, TargetSurface, Triangulation, UnitFrame, Vector3, VertexData, VertexId,
+};
 use mesh_loss::{FoldBarrier, LocalShape};
 
-use judge::{Broken, Judge, Surroundings};
+pub(crate) use judge::{Broken, Judge, Reach, Surroundings};
+
+use crate::untangle::{self, Untangled};
 
 /// A patch grows up to this many rings around what is broken.
 const MAX_RINGS: usize = 8;
@@ -42,6 +46,16 @@ pub struct Repair {
     pub left: Defects,
 }
 
+/// What becomes of crossings.
+#[derive(Clone, Copy)]
+pub enum Crossings<'t> {
+    /// They are taken out. Where a target is given, in the same coordinates, no patch comes farther from it to be free than
+    /// the farthest vertex of the whole surface, or than a hundredth of its longest side: such crossings are left.
+    Part(Option<&'t dyn TargetSurface>),
+    /// They stay.
+    Stay,
+}
+
 /// What is broken in a mesh that was not at rest.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Defects {
@@ -50,12 +64,14 @@ pub struct Defects {
     pub folds: Vec<[VertexId; 2]>,
     /// Rows of the triangles with Q_f < 0.1.
     pub skinny: Vec<usize>,
+    /// Pairs of triangles that run through each other: their rows, the lower first, in order. Touching does not count.
+    pub crossings: Vec<[usize; 2]>,
 }
 
 impl Defects {
     /// Whether nothing is broken.
     pub fn is_empty(&self) -> bool {
-        self.folds.is_empty() && self.skinny.is_empty()
+        self.folds.is_empty() && self.skinny.is_empty() && self.crossings.is_empty()
     }
 }
 
@@ -63,8 +79,13 @@ impl Defects {
 /// scaled, with their surroundings held ([`LocalShape::relax`]); a patch grows until nothing in it is broken. Before,
 /// edges that are only just folded are bent back along the gradient of [`FoldBarrier`].
 ///
-/// What moved goes back as far as nothing breaks: a patch that was mended stays where the drape had brought it. A patch
-/// that does not get better by a small motion stays as it was. All else stays, to the bit.
+/// What moved goes back as far as nothing breaks: a patch that was mended stays where the drape had brought it.
+///
+/// Then crossings are taken out, patch by patch: what crosses moves so that the line in which it crosses gets shorter, its
+/// surroundings relax, and every vertex goes back towards where it was, and to the target, as far as nothing crosses. What
+/// crosses at rest already may do so.
+///
+/// A patch that does not get better by a small motion stays as it was. All else stays, to the bit.
 ///
 /// The vertices of `held`, such as those of landmarks, stay where they are.
 pub fn repair(
@@ -72,17 +93,60 @@ pub fn repair(
     rest: &Positions,
     x: &Positions,
     held: &[VertexId],
+    crossings: Crossings<'_>,
 ) -> Repair {
+    let mut held = held.to_vec();
+    held.sort_unstable();
     let judge = Judge::new(triangulation, rest);
+    let crossing = untangle::crossings(triangulation, rest, x);
+    let before = Defects {
+        crossings: in_full(&crossing),
+        ..judge.defects(&judge.broken(x))
+    };
+    let (positions, broken) = unfolded(&judge, triangulation, x, &held);
+    let left = if positions == *x {
+        crossing
+    } else {
+        untangle::crossings(triangulation, rest, &positions)
+    };
+    let shape = Untangled {
+        positions,
+        broken,
+        left,
+    };
+    let shape = match crossings {
+        Crossings::Part(target) => untangle::untangle(&judge, shape, &held, target),
+        Crossings::Stay => shape,
+    };
+    Repair {
+        before,
+        left: Defects {
+            crossings: in_full(&shape.left),
+            ..judge.defects(&shape.broken)
+        },
+        positions: shape.positions,
+    }
+}
+
+fn in_full(pairs: &[[u32; 2]]) -> Vec<[usize; 2]> {
+    pairs.iter().map(|pair| pair.map(|t| t as usize)).collect()
+}
+
+/// Positions without the folds and skinny triangles that could be taken out, and what of them is left.
+fn unfolded(
+    judge: &Judge<'_>,
+    triangulation: &Arc<Triangulation>,
+    x: &Positions,
+    held: &[VertexId],
+) -> (Positions, Broken) {
     let mut broken = judge.broken(x);
-    let before = judge.defects(&broken);
     let mut positions = x.clone();
     let vertices = judge.vertices(&broken);
     if !vertices.is_empty() {
         let mender = Mender {
-            judge: &judge,
-            surroundings: Surroundings::new(&judge),
-            shape: LocalShape::new(triangulation, rest),
+            judge,
+            surroundings: Surroundings::new(judge),
+            shape: LocalShape::new(triangulation, judge.rest()),
             barriers: judge.barriers(UNBENT_COSINE),
             triangulation,
             held,
@@ -95,11 +159,7 @@ pub fn repair(
             }
         }
     }
-    Repair {
-        left: judge.defects(&broken),
-        before,
-        positions,
-    }
+    (positions, broken)
 }
 
 /// One of the ways to mend: it changes the positions of the free vertices, turn by turn.
@@ -126,8 +186,8 @@ impl Mender<'_> {
     ) -> Option<(Positions, Broken)> {
         let vertices = self.judge.vertices(broken);
         let free = |rings: usize| {
-            let mut free = self.grown(patch, rings);
-            free.retain(|v| !self.held.contains(v));
+            let mut free = grown(self.triangulation, patch, rings);
+            free.retain(|v| self.held.binary_search(v).is_err());
             free
         };
         // The first of the shapes that `change` goes through in which the patch is mended by a small motion, as near as can
@@ -157,7 +217,7 @@ impl Mender<'_> {
         let relaxed = |free: &[VertexId], n_flattenings: usize| {
             mended(free, SWEEPS, &mut |x, free, turn| {
                 if turn == 0 {
-                    (0..n_flattenings).for_each(|_| self.flatten(x, free));
+                    (0..n_flattenings).for_each(|_| flatten(self.triangulation, x, free));
                 }
                 self.shape.relax(x, free);
             })
@@ -215,32 +275,38 @@ impl Mender<'_> {
             }
         }
     }
+}
 
-    /// Moves each vertex of `free` once, in their order, to the mean of its neighbours.
-    fn flatten(&self, x: &mut Positions, free: &[VertexId]) {
-        for &v in free {
-            let around = self.triangulation.vertex_neighbours(v);
-            let sum: Vector3 = around.iter().map(|&w| x[w].coords).sum();
-            if !around.is_empty() {
-                x[v] = Point3::from(sum / around.len() as f64);
-            }
+/// Moves each vertex of `free` once, in their order, to the mean of its neighbours.
+pub(crate) fn flatten(triangulation: &Triangulation, x: &mut Positions, free: &[VertexId]) {
+    for &v in free {
+        let around = triangulation.vertex_neighbours(v);
+        let sum: Vector3 = around.iter().map(|&w| x[w].coords).sum();
+        if !around.is_empty() {
+            x[v] = Point3::from(sum / around.len() as f64);
         }
     }
+}
 
-    /// The vertices within `rings` edges of `patch`, in order.
-    fn grown(&self, patch: &[VertexId], rings: usize) -> Vec<VertexId> {
-        let mut grown = patch.to_vec();
-        for _ in 0..rings {
-            let around = grown
-                .iter()
-                .flat_map(|&v| self.triangulation.vertex_neighbours(v));
-            let around: Vec<VertexId> = around.copied().collect();
-            grown.extend(around);
-            grown.sort_unstable();
-            grown.dedup();
-        }
-        grown
+/// The vertices within `rings` edges of `patch`, in order.
+pub(crate) fn grown(
+    triangulation: &Triangulation,
+    patch: &[VertexId],
+    rings: usize,
+) -> Vec<VertexId> {
+    let mut is_in = VertexData::new(triangulation.n_vertices(), false);
+    patch.iter().for_each(|&v| is_in[v] = true);
+    let mut edge = patch.to_vec();
+    for _ in 0..rings {
+        let around = edge
+            .iter()
+            .flat_map(|&v| triangulation.vertex_neighbours(v));
+        let around = around
+            .copied()
+            .filter(|&w| !std::mem::replace(&mut is_in[w], true));
+        edge = around.collect();
     }
+    triangulation.vertices().filter(|&v| is_in[v]).collect()
 }
 
 /// What is broken at `x` that was not at rest.
@@ -250,7 +316,10 @@ pub(crate) fn defects(
     x: &Positions,
 ) -> Defects {
     let judge = Judge::new(triangulation, rest);
-    judge.defects(&judge.broken(x))
+    Defects {
+        crossings: in_full(&untangle::crossings(triangulation, rest, x)),
+        ..judge.defects(&judge.broken(x))
+    }
 }
 
 /// Nothing in the patch is broken any more, and nothing else is that was not.
@@ -274,7 +343,7 @@ mod tests {
     fn a_shape_without_defects_stays_to_the_bit() {
         let (triangulation, rest) = sphere(8);
         let x = rest.map(|p| p * 3.0);
-        let repair = repair(&triangulation, &rest, &x, &[]);
+        let repair = repair(&triangulation, &rest, &x, &[], Crossings::Part(None));
         assert_eq!(repair.positions, x);
         assert!(repair.before.is_empty() && repair.left.is_empty());
     }
@@ -287,7 +356,7 @@ mod tests {
         let [a, b] = [v, w].map(|v| triangulation.edges().iter().find(|e| e[0] == v).unwrap()[1]);
         x[v] = x[v] + (x[a] - x[v]) * 1.6;
         x[w] = x[w] + (x[b] - x[w]) * 1.6;
-        let repair = repair(&triangulation, &rest, &x, &[]);
+        let repair = repair(&triangulation, &rest, &x, &[], Crossings::Part(None));
         assert!(!repair.before.is_empty());
         assert!(repair.left.is_empty(), "{:?}", repair.left);
         let true_place = rest.map(|p| p * 2.0);
@@ -308,7 +377,7 @@ mod tests {
         for [v, w] in triangulation.edges().iter().copied().step_by(4001) {
             (x[v], x[w]) = (x[w], x[v]);
         }
-        let repair = repair(&triangulation, &rest, &x, &[]);
+        let repair = repair(&triangulation, &rest, &x, &[], Crossings::Part(None));
         assert!(!repair.before.is_empty());
         assert!(repair.left.is_empty(), "{:?}", repair.left);
     }

@@ -1,0 +1,54 @@
+//! How far from the target a patch comes.
+
+use mesh_core::{Point3, Positions, TargetSurface, TriangleBvh, VertexId};
+
+use super::crossing::Ground;
+
+/// The largest distance of a vertex from the target.
+pub(super) fn farthest(target: &dyn TargetSurface, x: &Positions) -> f64 {
+    let hits = target.closest_points(x.as_slice());
+    let farthest = hits.iter().map(|hit| hit.distance_squared);
+    farthest.fold(0.0, f64::max).sqrt()
+}
+
+/// How far the triangles `rows` and the target are from each other at `y`, at most, where they were nearer at `x`: corners
+/// and middles from the target, and what of the target was next to them from the triangles. Zero where nothing is farther
+/// than it was.
+pub(super) fn excess(
+    target: &dyn TargetSurface,
+    ground: Ground<'_>,
+    rows: &[u32],
+    [x, y]: [&Positions; 2],
+) -> f64 {
+    let surface = TriangleBvh::new(corners(ground, rows, y));
+    let places = places(ground, rows, x).zip(places(ground, rows, y));
+    let mut excess = 0.0f64;
+    for (old, new) in places.filter(|(old, new)| old != new) {
+        let was = target.closest_point(&old);
+        let there = target.closest_point(&new).distance_squared;
+        let back = surface.closest_point(&was.point);
+        let back = back.map_or(0.0, |hit| hit.distance_squared);
+        let is_farther = |d: &f64| *d > was.distance_squared;
+        excess = [there, back]
+            .into_iter()
+            .filter(is_farther)
+            .fold(excess, f64::max);
+    }
+    excess.sqrt()
+}
+
+fn corners(ground: Ground<'_>, rows: &[u32], x: &Positions) -> Vec<[Point3; 3]> {
+    let triangles = ground.triangulation.triangles();
+    let rows = rows.iter();
+    rows.map(|&row| triangles[row as usize].map(|v: VertexId| x[v]))
+        .collect()
+}
+
+/// Corners and middles of triangles.
+fn places(ground: Ground<'_>, rows: &[u32], x: &Positions) -> impl Iterator<Item = Point3> {
+    let of = |[a, b, c]: [Point3; 3]| {
+        let middle = (a.coords + b.coords + c.coords) / 3.0;
+        [a, b, c, middle.into()]
+    };
+    corners(ground, rows, x).into_iter().flat_map(of)
+}
