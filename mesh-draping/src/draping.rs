@@ -11,7 +11,7 @@ use neural_drape::{
 use crate::ending::{decided_overlap, left_out, repaired};
 use crate::stages::{DRAPING, REFINING};
 use crate::stand_in::StandIn;
-use crate::start::Start;
+use crate::start::{Expected, Search, Start};
 use crate::symmetric::Opposites;
 use crate::{BrushInput, Error, History, Moves, Note, Outcome, Pair, Preset, Stages, Stroke};
 
@@ -72,8 +72,7 @@ pub(crate) struct Beginning {
     pub(crate) notes: Vec<Note>,
     pub(crate) truth: Option<Positions>,
     pub(crate) stages: Stages,
-    /// A shape that nearly fits, where one is known.
-    pub(crate) start: Option<Positions>,
+    pub(crate) expected: Expected,
     pub(crate) is_symmetric: bool,
     pub(crate) is_stand_in_allowed: bool,
 }
@@ -87,7 +86,7 @@ impl Draping {
             mut notes,
             truth,
             mut stages,
-            start,
+            expected,
             is_symmetric,
             is_stand_in_allowed,
         } = beginning;
@@ -95,7 +94,7 @@ impl Draping {
         let opposites = opposites.transpose()?;
         pair.check_landmarks(&pair.landmarks)?;
         pair.check_lengths(&regions, truth.as_ref())?;
-        pair.check_start(start.as_ref())?;
+        expected.check(&pair)?;
         let is_dense = is_stand_in_allowed && StandIn::is_needed(&pair, &preset);
         let stand_in = is_dense.then(|| stages.time("stand-in", || StandIn::new(&pair)));
         let stand_in = stand_in.transpose()?;
@@ -108,9 +107,14 @@ impl Draping {
             shape,
             by_landmarks,
             drape: config,
-        } = stages.time("initial deformation", || match &start {
-            Some(shape) => Start::of_shape(draped_pair, &preset, shape),
-            None => Start::choose(draped_pair, &preset, &first_regions),
+        } = stages.time("initial deformation", || {
+            let search = Search {
+                pair: &pair,
+                stand_in: stand_in.as_ref(),
+                preset: &preset,
+                regions: &first_regions,
+            };
+            Start::find(&search, &expected)
         })?;
         let initial = shape.positions;
         notes.extend(shape.notes);

@@ -1,6 +1,8 @@
 //! The shapes that a source took before, as what to expect of the next one.
 
-use mesh_core::{Aabb, Landmark, Point3, Positions, TargetSurface, Vector3, VertexId};
+use mesh_core::{
+    Aabb, Landmark, Point3, Positions, SurfacePoint, TargetSurface, Vector3, VertexId,
+};
 use mesh_init::PointPair;
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
@@ -37,6 +39,8 @@ struct Pull {
     modes: Vec<Vector3>,
     /// In the target's coordinates.
     to: Point3,
+    /// How much it counts, > 0.
+    weight: f64,
 }
 
 impl Population {
@@ -71,27 +75,41 @@ impl Population {
         })
     }
 
+    /// How many vertices each shape has.
+    pub fn n_vertices(&self) -> usize {
+        self.mean.len()
+    }
+
     /// How many modes there are.
     pub fn n_modes(&self) -> usize {
         self.modes.len()
     }
 
     /// The shape of the population that fits a pair best, in the target's coordinates: where a drape may start
-    /// ([`Transfer::with_start`](crate::Transfer::with_start)).
+    /// ([`Transfer::with_prior`](crate::Transfer::with_prior)).
     ///
-    /// `min Σ |T q_j − x_j(c)|² / σ² + |c|²` over the coefficients c and the similarity T from the target to the population, with
-    /// σ a fiftieth of the longest side: first over landmarks q_j, then also over the closest points of vertices. With fewer
-    /// than three landmarks the target is taken to stand as the shapes do.
+    /// `min Σ w_j |T q_j − x_j(c)|² / σ² + |c|²` over the coefficients c and the similarity T from the target to the population,
+    /// with σ a fiftieth of the longest side: first over landmarks q_j, weighted as they are, then also over the closest points
+    /// of vertices, w by how far that is beside the others; none on an open boundary. With fewer than three landmarks the target is taken to stand as the shapes do.
     ///
     /// # Panics
     /// If the source has another number of vertices than the shapes.
     pub fn fit(&self, pair: &Pair) -> Positions {
+        self.fit_near(pair, &self.mean)
+    }
+
+    /// As [`Self::fit`]; with fewer than three landmarks the target is taken to stand as `near` does, a shape of the source in
+    /// its coordinates.
+    ///
+    /// # Panics
+    /// As [`Self::fit`].
+    pub fn fit_near(&self, pair: &Pair, near: &Positions) -> Positions {
         assert_eq!(pair.source.rest().len(), self.mean.len(), "one source");
         let followed = pair.landmarks.iter().filter(|l| l.is_followed());
         let marks: Vec<Pull> = followed.map(|l| self.pull_to(l)).collect();
         let mut fitted = Fitted {
             coefficients: DVector::zeros(self.modes.len()),
-            similarity: overlay(&self.mean, &self.mean),
+            similarity: overlay(&self.mean, near),
         };
         if marks.len() >= ENOUGH_TO_STAND {
             for _ in 0..ROUNDS[0] {
@@ -128,10 +146,12 @@ impl Population {
             mean: place.position(&self.mean),
             modes: self.modes.iter().map(moved).collect(),
             to: landmark.target,
+            weight: landmark.weight,
         }
     }
 
-    /// Vertices spread over the source, each with the closest point of the target.
+    /// Vertices spread over the source, each with the closest point of the target: none where that lies on its open boundary,
+    /// and the less the farther it is beside the others, `(1 + d² / d̄²)⁻²` with their median d̄.
     fn pulls_to_closest(&self, fitted: &Fitted, target: &dyn TargetSurface) -> Vec<Pull> {
         let shape = self.shape(&fitted.coefficients);
         let every = self.mean.len().div_ceil(N_LOOKED_AT);
@@ -139,10 +159,16 @@ impl Population {
         let rows: Vec<VertexId> = rows.collect();
         let placed = rows.iter().map(|&v| fitted.similarity.apply(&shape[v]));
         let hits = target.closest_points(&placed.collect::<Vec<_>>());
-        let pulls = rows.iter().zip(hits).map(|(&v, hit)| Pull {
-            mean: self.mean[v],
+        let within: Vec<(VertexId, SurfacePoint)> = (rows.into_iter().zip(hits))
+            .filter(|(_, hit)| !target.is_on_boundary(&hit.location))
+            .collect();
+        let scale = middle(within.iter().map(|(_, hit)| hit.distance_squared).collect());
+        let scale = scale.max((MISS * target.bounds().longest_side()).powi(2));
+        let pulls = within.iter().map(|(v, hit)| Pull {
+            mean: self.mean[*v],
             modes: self.modes.iter().map(|mode| mode[v.index()]).collect(),
             to: hit.point,
+            weight: (1.0 + hit.distance_squared / scale).powi(-2),
         });
         pulls.collect()
     }
@@ -163,11 +189,18 @@ impl Fitted {
             pull.mean + moved.sum::<Vector3>()
         };
         let pairs = |c: &DVector<f64>| -> Vec<PointPair> {
-            let pair = |pull: &&Pull| PointPair::new(place(pull, c), pull.to);
+            let pair = |pull: &&Pull| PointPair {
+                weight: pull.weight,
+                ..PointPair::new(place(pull, c), pull.to)
+            };
             pulls.iter().map(pair).collect()
         };
         let pairs_now = pairs(&self.coefficients).into_iter();
-        let back = pairs_now.map(|p| PointPair::new(p.target, p.source));
+        let back = pairs_now.map(|p| PointPair {
+            source: p.target,
+            target: p.source,
+            ..p
+        });
         let back = Similarity::fit(&back.collect::<Vec<_>>());
 
         let n = self.coefficients.len();
@@ -176,9 +209,9 @@ impl Fitted {
         for pull in pulls {
             let miss = back.apply(&pull.to) - pull.mean;
             for (i, a) in pull.modes.iter().enumerate() {
-                right[i] += a.dot(&miss);
+                right[i] += pull.weight * a.dot(&miss);
                 for (j, b) in pull.modes.iter().enumerate() {
-                    normal[(i, j)] += a.dot(b);
+                    normal[(i, j)] += pull.weight * a.dot(b);
                 }
             }
         }
@@ -187,6 +220,12 @@ impl Fitted {
         }
         self.similarity = Similarity::fit(&pairs(&self.coefficients));
     }
+}
+
+/// The value in the middle; 0 of none.
+fn middle(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied().unwrap_or(0.0)
 }
 
 /// The similarity that best lays a shape over another.

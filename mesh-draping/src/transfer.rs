@@ -4,7 +4,10 @@ use mesh_core::{Landmark, Positions};
 use neural_drape::{Regions, StepReport};
 
 use crate::draping::Beginning;
-use crate::{Draping, Error, Outcome, Pair, Parts, Preset, Source, Stages, Target};
+use crate::start::Expected;
+use crate::{
+    Draping, Error, Outcome, Pair, Parts, Population, Preset, Source, Stages, Target,
+};
 
 /// A drape that is about to begin.
 ///
@@ -24,7 +27,7 @@ pub struct Transfer {
     regions: Option<Regions>,
     truth: Option<Positions>,
     stages: Stages,
-    start: Option<Positions>,
+    expected: Expected,
     is_symmetric: bool,
     is_stand_in_allowed: bool,
 }
@@ -49,7 +52,7 @@ impl Transfer {
             regions: None,
             truth: None,
             stages: Stages::off(),
-            start: None,
+            expected: Expected::Nothing,
             is_symmetric: false,
             is_stand_in_allowed: true,
         }
@@ -92,8 +95,19 @@ impl Transfer {
     #[must_use]
     pub fn with_start(self, shape: Positions) -> Self {
         Self {
-            start: Some(shape),
+            expected: Expected::Nearly(shape),
             is_stand_in_allowed: false,
+            ..self
+        }
+    }
+
+    /// The shape of a population that fits best ([`Population::fit`]) is one more start to try: where it comes out clearly
+    /// better than the others, by the trial that decides between them ([`InitialMethod::Tried`](crate::InitialMethod)), the
+    /// drape starts there. With fewer landmarks than a population needs to find the target it is passed over.
+    #[must_use]
+    pub fn with_prior(self, population: Population) -> Self {
+        Self {
+            expected: Expected::OneOf(population),
             ..self
         }
     }
@@ -136,7 +150,7 @@ impl Transfer {
             notes,
             truth: self.truth,
             stages: self.stages,
-            start: self.start,
+            expected: self.expected,
             is_symmetric: self.is_symmetric,
             is_stand_in_allowed: self.is_stand_in_allowed,
         };
