@@ -8,12 +8,12 @@ use neural_drape::{
     Drape, DrapeConfig, DrapeError, DrapeInput, DrapeState, Regions, Repair, StepReport,
 };
 
-use crate::ending::{decided_overlap, left_out, repaired};
+use crate::ending::{decided_overlap, left_out, repaired, Incomplete};
 use crate::stages::{DRAPING, REFINING};
 use crate::stand_in::StandIn;
 use crate::start::{Expected, Search, Start};
 use crate::symmetric::Opposites;
-use crate::{BrushInput, Error, History, Moves, Note, Outcome, Pair, Preset, Stages, Stroke};
+use crate::{BrushInput, Error, History, Moves, Note, Outcome, Pair, Population, Preset, Stages, Stroke};
 
 /// Iterations on a dense source itself, after its stand-in was draped.
 const N_REFINING: usize = 60;
@@ -61,6 +61,8 @@ pub struct Draping {
     notes: Vec<Note>,
     history: History,
     stages: Stages,
+    /// What the target does not show is taken from these shapes at the end.
+    prior: Option<Population>,
     /// Where the result shall be symmetric.
     opposites: Option<Opposites>,
 }
@@ -141,6 +143,7 @@ impl Draping {
             notes,
             history: History::default(),
             stages,
+            prior: expected.into_population(),
             opposites,
         };
         draping.drape.set_profile(draping.stages.fresh_parts());
@@ -429,6 +432,7 @@ impl Draping {
             Some(stand_in) => stand_in.carry(&end.positions),
             None => end.positions.clone(),
         };
+        let draped = self.completed(draped);
         let draped = match &self.opposites {
             Some(opposites) => opposites.symmetrised(&draped),
             None => draped,
@@ -465,6 +469,30 @@ impl Draping {
             notes: self.notes,
             stages: self.stages,
         })
+    }
+}
+
+impl Draping {
+    /// The end of the source's own drape with what the target does not show as the prior expects it.
+    fn completed(&mut self, draped: Positions) -> Positions {
+        let prior = self.prior.as_ref().filter(|_| self.stand_in.is_none());
+        let completion = prior.and_then(|population| {
+            let end = Incomplete {
+                pair: &self.pair,
+                draped: &draped,
+                counterparts: &self.counterparts(),
+                regions: &self.regions,
+            };
+            end.completed(population)
+        });
+        let Some(completion) = completion else {
+            return draped;
+        };
+        self.notes.push(Note::Completed {
+            n_vertices: completion.n_moved,
+            trust: completion.trust,
+        });
+        completion.positions
     }
 }
 

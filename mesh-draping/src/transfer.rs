@@ -103,7 +103,8 @@ impl Transfer {
 
     /// The shape of a population that fits best ([`Population::fit`]) is one more start to try: where it comes out clearly
     /// better than the others, by the trial that decides between them ([`InitialMethod::Tried`](crate::InitialMethod)), the
-    /// drape starts there. With fewer landmarks than a population needs to find the target it is passed over.
+    /// drape starts there. At the end, what the target does not show is taken from the population, as far as that explains
+    /// what the target shows and nothing folds.
     #[must_use]
     pub fn with_prior(self, population: Population) -> Self {
         Self {

@@ -113,6 +113,7 @@ class Inputs:
         weights: Optional[str],
         hidden: bool,
         symmetric: bool,
+        prior: Sequence[_Rows],
     ) -> Inputs: ...
 
 @final

@@ -3,7 +3,8 @@
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use mesh_draping::{Parts, Transfer};
+use mesh_draping::mesh_core::Positions;
+use mesh_draping::{Parts, Population, Transfer};
 use numpy::PyArray2;
 use pyo3::prelude::*;
 
@@ -34,12 +35,14 @@ pub(crate) struct Inputs {
     landmarks: Py<Landmarks>,
     parts: Parts,
     is_symmetric: bool,
+    /// Shapes that the source took before.
+    prior: Vec<Positions>,
 }
 
 #[pymethods]
 impl Inputs {
     #[new]
-    #[pyo3(signature = (source, target, landmarks, *, free, rigid, draped, weights, hidden, symmetric))]
+    #[pyo3(signature = (source, target, landmarks, *, free, rigid, draped, weights, hidden, symmetric, prior))]
     #[allow(
         clippy::too_many_arguments,
         reason = "keywords of a call from Python; each is one option of the command line"
@@ -54,8 +57,11 @@ impl Inputs {
         weights: Option<String>,
         hidden: bool,
         symmetric: bool,
-    ) -> Self {
-        Self {
+        prior: Vec<Rows<'_>>,
+    ) -> PyResult<Self> {
+        let prior = prior.iter();
+        let prior = prior.map(|shape| source.gathered(shape, "a shape of the prior"));
+        Ok(Self {
             source: source.clone(),
             target: target.clone(),
             landmarks,
@@ -67,7 +73,8 @@ impl Inputs {
                 is_hidden_draped: !hidden,
             },
             is_symmetric: symmetric,
-        }
+            prior: prior.collect::<PyResult<_>>()?,
+        })
     }
 }
 
@@ -94,7 +101,12 @@ impl Draping {
         if let Some(start) = start {
             transfer = transfer.with_start(inputs.source.gathered(&start, "the start")?);
         }
-        let draping = waited(py, move || transfer.start())?.map_err(told)?;
+        let prior = inputs.prior.clone();
+        let start = move || match Population::of(&prior) {
+            Some(population) => transfer.with_prior(population).start(),
+            None => transfer.start(),
+        };
+        let draping = waited(py, start)?.map_err(told)?;
         Ok(Self {
             source: inputs.source.clone(),
             iteration: AtomicUsize::new(draping.iteration()),

@@ -45,8 +45,7 @@ pub(crate) struct Args {
     /// may lack from the second frame on
     #[arg(long, conflicts_with_all = ["shard", "jobs"])]
     sequence: bool,
-    /// Start every drape from the shape that fits best of those that the results in this folder span; not a folder that
-    /// this batch writes to
+    /// Expect shapes like the results in this folder, as `transfer` does; not a folder that this batch writes to
     #[arg(long, value_name = "FOLDER", conflicts_with = "sequence")]
     prior: Option<PathBuf>,
 }

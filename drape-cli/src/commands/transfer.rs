@@ -4,7 +4,6 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use anyhow::ensure;
 use mesh_core::io::write_atomic;
 use mesh_core::Positions;
 use mesh_draping::mesh_metrics::Report;
@@ -59,8 +58,8 @@ pub(crate) struct Args {
     /// as long
     #[arg(long, value_name = "FILE")]
     pub(super) from: Option<PathBuf>,
-    /// Start from the shape that fits best of those that the results in this folder span: their mean and the modes in which
-    /// they differ, fitted to three landmarks or more. No start is searched, and the run is a third as long
+    /// Expect a shape like the results in this folder: their mean and the modes in which they differ. The one that fits best is
+    /// one more start to try, and what the target does not show is taken from them
     #[arg(long, value_name = "FOLDER", conflicts_with = "from")]
     pub(super) prior: Option<PathBuf>,
     /// Make the result as symmetric as the source is
@@ -85,9 +84,6 @@ pub(crate) struct Args {
 const REPORT_PICTURE: usize = 440;
 /// Pixels along the side of a picture in a PNG file.
 const PNG_PICTURE: usize = 420;
-
-/// Landmarks without which a population does not find a target.
-const LEAST_FOR_PRIOR: usize = 3;
 
 pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let figures = drape_files(args)?.figures();
@@ -114,7 +110,12 @@ pub(super) fn drape_files(args: &Args) -> anyhow::Result<Done<'_>> {
     let mut pair = stages.time("reading", || inputs.read())?;
     pair.source = pair.source.with_morphs(args.morphs.morphs.into());
     let truth = read_shape(args.truth.as_deref(), &pair)?;
-    let start = stages.time("start", || start(args, &pair))?;
+    let from = read_shape(args.from.as_deref(), &pair)?;
+    let prior = stages.time("prior", || {
+        let prior = args.prior.as_ref();
+        let read = prior.map(|folder| read_population(folder, &pair.source));
+        read.transpose()
+    })?;
     check_bakeable(&args.bake.maps(), &pair.source, &args.target)?;
     let mut warnings = words::about_inputs(&pair);
     if let Some(file) = pair.source.file() {
@@ -136,8 +137,11 @@ pub(super) fn drape_files(args: &Args) -> anyhow::Result<Done<'_>> {
     if args.symmetric {
         transfer = transfer.symmetric();
     }
-    if let Some(start) = start {
-        transfer = transfer.with_start(start);
+    if let Some(from) = from {
+        transfer = transfer.with_start(from);
+    }
+    if let Some(prior) = prior {
+        transfer = transfer.with_prior(prior);
     }
     let mut outcome = drape(transfer)?;
     let notes: Vec<String> = words::notes(&outcome.notes).collect();
@@ -158,20 +162,6 @@ pub(super) fn drape_files(args: &Args) -> anyhow::Result<Done<'_>> {
     done.warnings.extend(baked);
     done.tell(&watch, &stages)?;
     Ok(done)
-}
-
-/// The shape to start from, where one is given.
-fn start(args: &Args, pair: &Pair) -> anyhow::Result<Option<Positions>> {
-    if let Some(folder) = &args.prior {
-        let followed = pair.landmarks.iter().filter(|l| l.is_followed());
-        ensure!(
-            followed.count() >= LEAST_FOR_PRIOR,
-            "--prior needs {LEAST_FOR_PRIOR} landmarks or more to find where the target stands"
-        );
-        let population = read_population(folder, &pair.source)?;
-        return Ok(Some(population.fit(pair)));
-    }
-    read_shape(args.from.as_deref(), pair)
 }
 
 /// A shape of the source in a file, where one is given.

@@ -15,6 +15,14 @@ pub(crate) enum Expected {
 }
 
 impl Expected {
+    /// The population, where that is what is known.
+    pub(crate) fn into_population(self) -> Option<Population> {
+        match self {
+            Self::OneOf(population) => Some(population),
+            Self::Nothing | Self::Nearly(_) => None,
+        }
+    }
+
     /// Whether there is a position for each vertex of the source.
     pub(crate) fn check(&self, pair: &Pair) -> Result<(), DrapeError> {
         match self {

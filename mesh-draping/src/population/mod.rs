@@ -1,5 +1,7 @@
 //! The shapes that a source took before, as what to expect of the next one.
 
+mod completion;
+
 use mesh_core::{
     Aabb, Landmark, Point3, Positions, SurfacePoint, TargetSurface, Vector3, VertexId,
 };
@@ -8,6 +10,7 @@ use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
 use crate::initial::ENOUGH_TO_STAND;
 use crate::{Pair, Similarity};
+pub(crate) use completion::Completion;
 
 /// Variance of a mode, as a share of the largest, below which it is noise.
 const LEAST_VARIANCE: f64 = 1e-4;
@@ -107,10 +110,7 @@ impl Population {
         assert_eq!(pair.source.rest().len(), self.mean.len(), "one source");
         let followed = pair.landmarks.iter().filter(|l| l.is_followed());
         let marks: Vec<Pull> = followed.map(|l| self.pull_to(l)).collect();
-        let mut fitted = Fitted {
-            coefficients: DVector::zeros(self.modes.len()),
-            similarity: overlay(&self.mean, near),
-        };
+        let mut fitted = Fitted::new(self, overlay(&self.mean, near));
         if marks.len() >= ENOUGH_TO_STAND {
             for _ in 0..ROUNDS[0] {
                 fitted.improve(&marks.iter().collect::<Vec<_>>(), self.side);
@@ -122,8 +122,7 @@ impl Population {
             let all: Vec<&Pull> = marks.iter().chain(&near).collect();
             fitted.improve(&all, self.side);
         }
-        self.shape(&fitted.coefficients)
-            .map(|p| fitted.similarity.apply(p))
+        fitted.placed(self)
     }
 
     fn shape(&self, coefficients: &DVector<f64>) -> Positions {
@@ -165,12 +164,21 @@ impl Population {
         let scale = middle(within.iter().map(|(_, hit)| hit.distance_squared).collect());
         let scale = scale.max((MISS * target.bounds().longest_side()).powi(2));
         let pulls = within.iter().map(|(v, hit)| Pull {
-            mean: self.mean[*v],
-            modes: self.modes.iter().map(|mode| mode[v.index()]).collect(),
             to: hit.point,
             weight: (1.0 + hit.distance_squared / scale).powi(-2),
+            ..self.pull_of(*v)
         });
         pulls.collect()
+    }
+
+    /// A pull on a vertex, to where it is on the mean.
+    fn pull_of(&self, v: VertexId) -> Pull {
+        Pull {
+            mean: self.mean[v],
+            modes: self.modes.iter().map(|mode| mode[v.index()]).collect(),
+            to: self.mean[v],
+            weight: 1.0,
+        }
     }
 }
 
@@ -182,6 +190,20 @@ struct Fitted {
 }
 
 impl Fitted {
+    /// The mean, where a map puts it.
+    fn new(population: &Population, similarity: Similarity) -> Self {
+        Self {
+            coefficients: DVector::zeros(population.modes.len()),
+            similarity,
+        }
+    }
+
+    /// The shape in the target's coordinates.
+    fn placed(&self, population: &Population) -> Positions {
+        let shape = population.shape(&self.coefficients);
+        shape.map(|p| self.similarity.apply(p))
+    }
+
     /// One round: the similarity for these coefficients, then the coefficients for this similarity.
     fn improve(&mut self, pulls: &[&Pull], side: f64) {
         let place = |pull: &Pull, c: &DVector<f64>| {
@@ -268,7 +290,7 @@ mod tests {
     use mesh_core::{shapes, PolygonSoup};
 
     /// A ball drawn out along two axes.
-    fn egg(y: f64, z: f64) -> PolygonSoup {
+    pub(super) fn egg(y: f64, z: f64) -> PolygonSoup {
         let mut soup = shapes::quad_sphere(6);
         for p in &mut soup.positions {
             *p = Point3::new(p.x, y * p.y, z * p.z);
@@ -276,7 +298,7 @@ mod tests {
         soup
     }
 
-    fn population() -> Population {
+    pub(super) fn population() -> Population {
         let eggs = [(1.0, 1.0), (1.4, 1.0), (1.0, 1.3), (1.4, 1.3), (1.2, 0.8)];
         let shapes = eggs.map(|(y, z)| Positions::from(egg(y, z).positions));
         Population::of(&shapes).expect("five shapes")
