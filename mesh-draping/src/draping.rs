@@ -13,7 +13,9 @@ use crate::stages::{DRAPING, REFINING};
 use crate::stand_in::StandIn;
 use crate::start::{Expected, Search, Start};
 use crate::symmetric::Opposites;
-use crate::{BrushInput, Error, History, Moves, Note, Outcome, Pair, Population, Preset, Stages, Stroke};
+use crate::{
+    BrushInput, Error, History, Moves, Note, Outcome, Pair, Population, Preset, Stages, Stroke,
+};
 
 /// Iterations on a dense source itself, after its stand-in was draped.
 const N_REFINING: usize = 60;

@@ -5,9 +5,7 @@ use neural_drape::{Regions, StepReport};
 
 use crate::draping::Beginning;
 use crate::start::Expected;
-use crate::{
-    Draping, Error, Outcome, Pair, Parts, Population, Preset, Source, Stages, Target,
-};
+use crate::{Draping, Error, Outcome, Pair, Parts, Population, Preset, Source, Stages, Target};
 
 /// A drape that is about to begin.
 ///

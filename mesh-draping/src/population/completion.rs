@@ -43,7 +43,11 @@ impl Population {
             return None;
         }
         let expected = self.fit_to(&seen, draped);
-        let trust = trust(&seen, draped, [&expected, &laid_over(source, &seen, draped)])?;
+        let trust = trust(
+            &seen,
+            draped,
+            [&expected, &laid_over(source, &seen, draped)],
+        )?;
 
         let mut is_held = vec![true; draped.len()];
         unseen.iter().for_each(|v| is_held[v.index()] = false);

@@ -352,6 +352,46 @@ mod tests {
         assert!(worst < 0.06, "{worst}");
     }
 
+    /// The closest points of what the scan does not show lie all on its edge.
+    #[test]
+    fn a_scan_of_one_side_does_not_draw_the_other_to_its_edge() {
+        let mut pair = pair(1.25, 1.1);
+        let right = pair.target.soup().positions.clone();
+        let mut scan = egg(1.25, 1.1);
+        let is_seen = |row: &u32| scan.positions[*row as usize].x > -0.1;
+        let faces = scan.faces.iter().filter(|face| face.iter().all(is_seen));
+        scan.faces = faces.cloned().collect();
+        let rest = pair.source.rest();
+        let front = rest.ids().filter(|&v| rest[v].x > 0.3).step_by(5);
+        pair.landmarks = front.map(|v| Landmark::new(v, right[v.index()])).collect();
+        pair.target = Target::of_soup(scan).unwrap();
+        let fitted = population().fit(&pair);
+        let misses = fitted.iter().zip(&right).map(|(a, b)| (a - b).norm());
+        let worst = misses.fold(0.0, f64::max);
+        assert!(worst < 0.06, "{worst}");
+    }
+
+    /// Two landmarks of half the weight count as one.
+    #[test]
+    fn landmarks_count_by_their_weight() {
+        let mut pair = pair(1.25, 1.1);
+        let at = |row: usize| pair.target.soup().positions[row] * 1.1;
+        let rows = (0..pair.target.soup().positions.len()).step_by(30);
+        pair.landmarks = rows
+            .map(|row| Landmark::new(VertexId::new(row), at(row)))
+            .collect();
+        let once = population().fit(&pair);
+        let halves = pair.landmarks.iter().map(|l| Landmark {
+            weight: 0.5,
+            ..l.clone()
+        });
+        pair.landmarks = halves.clone().chain(halves).collect();
+        let twice = population().fit(&pair);
+        for (a, b) in once.iter().zip(&twice) {
+            assert!((a - b).norm() < 1e-9);
+        }
+    }
+
     #[test]
     fn one_shape_has_no_mode_and_none_is_no_population() {
         assert!(Population::of(&[]).is_none());

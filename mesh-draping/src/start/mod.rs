@@ -52,9 +52,7 @@ impl Search<'_> {
     /// landmarks do not.
     fn fitted(&self, population: &Population, near: &Positions) -> Result<Positions, Error> {
         let fitted = match self.stand_in {
-            Some(stand_in) => {
-                stand_in.pick(&population.fit_near(self.pair, &stand_in.carry(near)))
-            }
+            Some(stand_in) => stand_in.pick(&population.fit_near(self.pair, &stand_in.carry(near))),
             None => population.fit_near(self.pair, near),
         };
         brought(self.draped_pair(), &fitted)
@@ -151,8 +149,7 @@ impl Start {
                     false => Vec::new(),
                 };
                 starts.extend(fitted);
-                let trials: Vec<Result<Tried, Error>> =
-                    starts.into_par_iter().map(trial).collect();
+                let trials: Vec<Result<Tried, Error>> = starts.into_par_iter().map(trial).collect();
                 trials.into_iter().flatten().collect()
             },
         );
