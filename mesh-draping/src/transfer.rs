@@ -111,6 +111,14 @@ impl Transfer {
         }
     }
 
+    /// The shape changes evenly along its surface from where the drape starts, by this weight: from the frame before, so that
+    /// a motion trembles less and lags behind a little ([`mesh_loss::SmoothChange`]). A hundred is little, a thousand much.
+    #[must_use]
+    pub fn with_smooth_change(mut self, weight: f64) -> Self {
+        self.preset.drape = self.preset.drape.with_smooth_change(weight);
+        self
+    }
+
     /// The result is as symmetric as the source: at the end, each vertex goes to the middle between itself and the mirror
     /// image of its opposite, across the plane that lies between them. Where the target is not symmetric, the result
     /// leaves it by as much.

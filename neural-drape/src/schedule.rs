@@ -117,6 +117,16 @@ impl DrapeConfig {
         self.stages.last().map_or(Weights::ZERO, |s| s.to)
     }
 
+    /// This run with a weight on [`mesh_loss::SmoothChange`] all the way.
+    #[must_use]
+    pub fn with_smooth_change(mut self, weight: f64) -> Self {
+        for stage in &mut self.stages {
+            stage.from.smooth_change = weight;
+            stage.to.smooth_change = weight;
+        }
+        self
+    }
+
     /// The iteration at which each stage starts.
     pub(crate) fn stage_starts(&self) -> Vec<usize> {
         self.stages

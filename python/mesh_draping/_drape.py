@@ -63,6 +63,8 @@ class Drape:
     ``truth``: where each vertex belongs, to judge by: a path, or an array of shape (n, 3).
     ``start``: a shape of the source that nearly fits, likewise: the result of the frame before. No start is searched then, and
     the run is a third as long.
+    ``smooth_change``: weight of an even change along the surface from where the drape starts: over the frames of a motion less
+    trembling, for more lag. A hundred is little, a thousand much.
     ``config``: a TOML file of settings over those of the preset. ``settings``: single settings over both, by the names of
     :func:`mesh_draping.settings`, such as ``overlap="source-partial"`` or ``sampling={"n_samples": 4000}``.
     """
@@ -81,6 +83,7 @@ class Drape:
         weights: Optional[str] = None,
         hidden: bool = True,
         symmetric: bool = False,
+        smooth_change: float = 0.0,
         prior: Iterable[Any] = (),
         truth: Any = None,
         start: Any = None,
@@ -99,6 +102,7 @@ class Drape:
             weights=weights,
             hidden=hidden,
             symmetric=symmetric,
+            smooth_change=smooth_change,
             prior=[shape for shape in (positions(self.source, one) for one in prior) if shape is not None],
         )
         self._native = _native.Draping(inputs, chosen, *(positions(self.source, shape) for shape in (truth, start)))

@@ -35,6 +35,8 @@ pub(crate) struct Inputs {
     landmarks: Py<Landmarks>,
     parts: Parts,
     is_symmetric: bool,
+    /// Weight of an even change along the surface.
+    smooth_change: f64,
     /// Shapes that the source took before.
     prior: Vec<Positions>,
 }
@@ -42,7 +44,7 @@ pub(crate) struct Inputs {
 #[pymethods]
 impl Inputs {
     #[new]
-    #[pyo3(signature = (source, target, landmarks, *, free, rigid, draped, weights, hidden, symmetric, prior))]
+    #[pyo3(signature = (source, target, landmarks, *, free, rigid, draped, weights, hidden, symmetric, smooth_change, prior))]
     #[allow(
         clippy::too_many_arguments,
         reason = "keywords of a call from Python; each is one option of the command line"
@@ -57,6 +59,7 @@ impl Inputs {
         weights: Option<String>,
         hidden: bool,
         symmetric: bool,
+        smooth_change: f64,
         prior: Vec<Rows<'_>>,
     ) -> PyResult<Self> {
         let prior = prior.iter();
@@ -73,6 +76,7 @@ impl Inputs {
                 is_hidden_draped: !hidden,
             },
             is_symmetric: symmetric,
+            smooth_change,
             prior: prior.collect::<PyResult<_>>()?,
         })
     }
@@ -94,6 +98,9 @@ impl Draping {
             Transfer::of_pair(pair, settings.0.clone()).with_parts(inputs.parts.clone());
         if let Some(truth) = truth {
             transfer = transfer.with_truth(inputs.source.gathered(&truth, "the truth")?);
+        }
+        if inputs.smooth_change != 0.0 {
+            transfer = transfer.with_smooth_change(inputs.smooth_change);
         }
         if inputs.is_symmetric {
             transfer = transfer.symmetric();

@@ -58,6 +58,10 @@ pub(crate) struct Args {
     /// as long
     #[arg(long, value_name = "FILE")]
     pub(super) from: Option<PathBuf>,
+    /// Weight of an even change along the surface from that shape: less trembling over the frames of a motion, for more
+    /// lag. A hundred is little, a thousand much
+    #[arg(long, value_name = "WEIGHT", requires = "from")]
+    pub(super) smooth_change: Option<f64>,
     /// Expect a shape like the results in this folder: their mean and the modes in which they differ. The one that fits best is
     /// one more start to try, and what the target does not show is taken from them
     #[arg(long, value_name = "FOLDER", conflicts_with = "from")]
@@ -139,6 +143,9 @@ pub(super) fn drape_files(args: &Args) -> anyhow::Result<Done<'_>> {
     }
     if let Some(from) = from {
         transfer = transfer.with_start(from);
+    }
+    if let Some(weight) = args.smooth_change {
+        transfer = transfer.with_smooth_change(weight);
     }
     if let Some(prior) = prior {
         transfer = transfer.with_prior(prior);
