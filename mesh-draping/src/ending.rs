@@ -63,7 +63,7 @@ impl Incomplete<'_> {
                 || regions.attraction[v] == 0.0
                 || self.counterparts.has_vertex(v, hit, target)
         };
-        let completion = population.completed(&self.pair.source, self.draped, is_kept);
+        let completion = population.completed(self.pair, self.draped, is_kept);
         let n_before = self.n_defects(self.draped);
         completion.filter(|c| self.n_defects(&c.positions) <= n_before)
     }

@@ -100,7 +100,7 @@ impl Transfer {
     }
 
     /// The shape of a population that fits best ([`Population::fit`]) is one more start to try: where it comes out clearly
-    /// better than the others, by the trial that decides between them ([`InitialMethod::Tried`](crate::InitialMethod)), the
+    /// better than the others and all of the source has a counterpart, by the trial that decides between them ([`InitialMethod::Tried`](crate::InitialMethod)), the
     /// drape starts there. At the end, what the target does not show is taken from the population, as far as that explains
     /// what the target shows and nothing folds.
     #[must_use]

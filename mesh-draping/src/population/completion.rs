@@ -1,12 +1,17 @@
 //! What a target does not show, taken from the shapes that a source took before.
 
-use mesh_core::{Positions, Vector3, VertexId};
+use mesh_core::{Landmark, Point3, Positions, Vector3, VertexId};
 use mesh_operators::{cotan_laplacian, FixedSolve, FixedSolveScratch};
 
 use super::{overlay, Fitted, Population, Pull, N_LOOKED_AT, ROUNDS};
 use crate::initial::ENOUGH_TO_STAND;
-use crate::{Similarity, Source};
+use crate::{Pair, Similarity, Source};
 use mesh_init::PointPair;
+
+/// Landmarks tell more of what the target does not show than a seen vertex does.
+const OF_A_LANDMARK: f64 = 10.0;
+/// What is so near a landmark stays, in longest sides of the population: a single vertex that is held makes a spike.
+const HELD_AROUND: f64 = 0.015;
 
 /// A result whose part that the target did not show was completed.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,7 +25,8 @@ pub(crate) struct Completion {
 }
 
 impl Population {
-    /// The result `draped` of `source`, with the vertices that were not `seen` where the population expects them.
+    /// The result `draped` of `pair`, with the vertices that were not `seen` where the population expects them. Those about a
+    /// landmark count as seen.
     ///
     /// The shape y of the population that fits the seen vertices best tells the form of the others; what y misses at the edge
     /// of the seen fades into them as a harmonic field h: `x = draped + t (y + h − draped)`. They go as much of the way as the
@@ -31,10 +37,14 @@ impl Population {
     /// of which nothing is seen stay.
     pub(crate) fn completed(
         &self,
-        source: &Source,
+        pair: &Pair,
         draped: &Positions,
         is_seen: impl Fn(VertexId) -> bool,
     ) -> Option<Completion> {
+        let source = &pair.source;
+        let marks: Vec<&Landmark> = pair.landmarks.iter().filter(|l| l.is_followed()).collect();
+        let is_marked = self.about(&marks);
+        let is_seen = |v: VertexId| is_seen(v) || is_marked[v.index()];
         let groups = source.triangulation().connected_groups(|_| true);
         let partly = groups.iter().filter(|g| g.iter().any(|&v| is_seen(v)));
         let unseen: Vec<VertexId> = partly.flatten().copied().filter(|&v| !is_seen(v)).collect();
@@ -42,7 +52,7 @@ impl Population {
         if unseen.is_empty() || seen.len() < ENOUGH_TO_STAND.max(self.n_modes()) {
             return None;
         }
-        let expected = self.fit_to(&seen, draped);
+        let expected = self.fit_to(&seen, &marks, draped);
         let trust = trust(
             &seen,
             draped,
@@ -70,14 +80,30 @@ impl Population {
         })
     }
 
-    /// The shape of the population that fits a shape of the source best at these vertices, in its coordinates.
-    fn fit_to(&self, seen: &[VertexId], shape: &Positions) -> Positions {
+    /// Which vertices of the mean lie about a landmark.
+    fn about(&self, marks: &[&Landmark]) -> Vec<bool> {
+        let places = marks.iter().map(|l| l.source.position(&self.mean));
+        let places: Vec<Point3> = places.collect();
+        let limit = HELD_AROUND * self.side;
+        let is_near = |p: &Point3| places.iter().any(|q| (p - q).norm() <= limit);
+        self.mean.iter().map(is_near).collect()
+    }
+
+    /// The shape of the population that fits a shape of the source best at these vertices and at its landmarks, in its
+    /// coordinates.
+    fn fit_to(&self, seen: &[VertexId], marks: &[&Landmark], shape: &Positions) -> Positions {
         let every = seen.len().div_ceil(N_LOOKED_AT);
         let pull = |&v: &VertexId| Pull {
             to: shape[v],
             ..self.pull_of(v)
         };
-        let pulls: Vec<Pull> = seen.iter().step_by(every).map(pull).collect();
+        let mark = |l: &&Landmark| Pull {
+            to: l.source.position(shape),
+            weight: OF_A_LANDMARK * l.weight,
+            ..self.pull_to(l)
+        };
+        let seen = seen.iter().step_by(every).map(pull);
+        let pulls: Vec<Pull> = seen.chain(marks.iter().map(mark)).collect();
         let pulls: Vec<&Pull> = pulls.iter().collect();
         let mut fitted = Fitted::new(self, overlay(&self.mean, shape));
         for _ in 0..ROUNDS.into_iter().sum() {
@@ -106,18 +132,12 @@ fn trust(seen: &[VertexId], draped: &Positions, shapes: [&Positions; 2]) -> Opti
 
 #[cfg(test)]
 mod tests {
-    use super::super::tests::{egg, population};
+    use super::super::tests::{egg, pair, population};
     use super::*;
-    use crate::Seams;
-    use mesh_core::shapes;
-
-    fn source() -> Source {
-        Source::of_soup(shapes::quad_sphere(6), Seams::EXACT).expect("a mesh")
-    }
 
     /// What is right in front, and as the rest shape is behind.
     fn half_right(right: &Positions) -> Positions {
-        let rest = source().rest().clone();
+        let rest = pair(1.0, 1.0).source.rest().clone();
         let ids = rest.ids();
         let half = ids.map(|v| if rest[v].x > 0.0 { right[v] } else { rest[v] });
         half.collect()
@@ -132,8 +152,8 @@ mod tests {
     fn what_is_not_seen_is_as_the_population_expects_it() {
         let right = Positions::from(egg(1.25, 1.1).positions);
         let draped = half_right(&right);
-        let rest = source().rest().clone();
-        let found = population().completed(&source(), &draped, |v| rest[v].x > 0.0);
+        let rest = pair(1.0, 1.0).source.rest().clone();
+        let found = population().completed(&pair(1.0, 1.0), &draped, |v| rest[v].x > 0.0);
         let found = found.expect("half of it is not seen");
         assert!(found.trust > 0.8 && found.trust <= 1.0, "{}", found.trust);
         let (before, after) = (worst(&draped, &right), worst(&found.positions, &right));
@@ -144,15 +164,31 @@ mod tests {
     }
 
     #[test]
+    fn what_is_marked_stays_where_it_is() {
+        let right = Positions::from(egg(1.25, 1.1).positions);
+        let draped = half_right(&right);
+        let mut pair = pair(1.0, 1.0);
+        let rest = pair.source.rest().clone();
+        let back = |a: &VertexId, b: &VertexId| rest[*a].x.total_cmp(&rest[*b].x);
+        let marked = rest.ids().min_by(back).expect("a vertex");
+        pair.landmarks = vec![Landmark::new(marked, draped[marked])];
+        let found = population().completed(&pair, &draped, |v| rest[v].x > 0.0);
+        assert_eq!(
+            found.expect("the others move").positions[marked],
+            draped[marked]
+        );
+    }
+
+    #[test]
     fn nothing_is_completed_where_all_is_seen_or_nothing_is_explained() {
         let right = Positions::from(egg(1.25, 1.1).positions);
-        let whole = population().completed(&source(), &right, |_| true);
+        let whole = population().completed(&pair(1.0, 1.0), &right, |_| true);
         assert_eq!(whole, None);
-        let none = population().completed(&source(), &right, |_| false);
+        let none = population().completed(&pair(1.0, 1.0), &right, |_| false);
         assert_eq!(none, None);
         // The rest shape itself, which the eggs do not explain better than it does.
-        let rest = source().rest().clone();
-        let plain = population().completed(&source(), &rest, |v| rest[v].x > 0.0);
+        let rest = pair(1.0, 1.0).source.rest().clone();
+        let plain = population().completed(&pair(1.0, 1.0), &rest, |v| rest[v].x > 0.0);
         assert_eq!(plain, None);
     }
 }

@@ -304,7 +304,7 @@ mod tests {
         Population::of(&shapes).expect("five shapes")
     }
 
-    fn pair(y: f64, z: f64) -> Pair {
+    pub(super) fn pair(y: f64, z: f64) -> Pair {
         Pair {
             source: Source::of_soup(shapes::quad_sphere(6), Seams::EXACT).expect("a mesh"),
             target: Target::of_soup(egg(y, z)).expect("a target"),

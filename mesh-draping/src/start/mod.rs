@@ -134,26 +134,27 @@ impl Start {
         let (pair, preset) = (search.draped_pair(), search.preset);
         let stand_in = StandIn::with_vertices(pair, N_VERTICES)?;
         let regions = stand_in.regions(search.regions);
-        let fitted = population.map(|p| search.fitted(p, &self.shape.positions));
-        let fitted = fitted.and_then(Result::ok).map(|x| stand_in.pick(&x));
         let first = stand_in.pick(&self.shape.positions);
         let trial = |start: Positions| -> Result<Tried, Error> {
             let trial = Trial::best(&stand_in.pair, preset, &regions, &start)?;
             Ok(Tried { start, trial })
         };
-        let (own, others) = rayon::join(
+        let (own, mut others) = rayon::join(
             || trial(first),
             || -> Vec<Tried> {
-                let mut starts = match search.is_tried() {
+                let starts = match search.is_tried() {
                     true => led(pair, &stand_in),
                     false => Vec::new(),
                 };
-                starts.extend(fitted);
                 let trials: Vec<Result<Tried, Error>> = starts.into_par_iter().map(trial).collect();
                 trials.into_iter().flatten().collect()
             },
         );
         let own = own?;
+        // Where a part has no counterpart, a shape that fits the rest is no better start; that part is completed at the end.
+        let prior = population.filter(|_| !own.trial.is_any_left_out);
+        let fitted = prior.and_then(|p| search.fitted(p, &self.shape.positions).ok());
+        others.extend(fitted.and_then(|x| trial(stand_in.pick(&x)).ok()));
         let cost = |tried: &&Tried| tried.trial.cost();
         let cheapest = |a: &&Tried, b: &&Tried| cost(a).total_cmp(&cost(b));
         let better = others
