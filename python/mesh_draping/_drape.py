@@ -64,7 +64,7 @@ class Drape:
     ``start``: a shape of the source that nearly fits, likewise: the result of the frame before. No start is searched then, and
     the run is a third as long.
     ``smooth_change``: weight of an even change along the surface from where the drape starts: over the frames of a motion less
-    trembling, for more lag. A hundred is little, a thousand much.
+    trembling. 50 is a good value; with 500 it lags behind.
     ``config``: a TOML file of settings over those of the preset. ``settings``: single settings over both, by the names of
     :func:`mesh_draping.settings`, such as ``overlap="source-partial"`` or ``sampling={"n_samples": 4000}``.
     """

@@ -45,8 +45,8 @@ pub(crate) struct Args {
     /// may lack from the second frame on
     #[arg(long, conflicts_with_all = ["shard", "jobs"])]
     sequence: bool,
-    /// Weight of an even change along the surface from frame to frame: less trembling, for more lag. A hundred is little, a
-    /// thousand much
+    /// Weight of an even change along the surface from frame to frame: less trembling. 50 is a good value; with 500 it lags
+    /// behind
     #[arg(long, value_name = "WEIGHT", requires = "sequence")]
     smooth_change: Option<f64>,
     /// Expect shapes like the results in this folder, as `transfer` does; not a folder that this batch writes to

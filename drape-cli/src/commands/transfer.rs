@@ -58,8 +58,8 @@ pub(crate) struct Args {
     /// as long
     #[arg(long, value_name = "FILE")]
     pub(super) from: Option<PathBuf>,
-    /// Weight of an even change along the surface from that shape: less trembling over the frames of a motion, for more
-    /// lag. A hundred is little, a thousand much
+    /// Weight of an even change along the surface from that shape: less trembling over the frames of a motion. 50 is a
+    /// good value; with 500 it lags behind
     #[arg(long, value_name = "WEIGHT", requires = "from")]
     pub(super) smooth_change: Option<f64>,
     /// Expect a shape like the results in this folder: their mean and the modes in which they differ. The one that fits best is

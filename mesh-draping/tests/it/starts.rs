@@ -1,7 +1,9 @@
 //! Which start is taken, and what is left out of a shape.
 
-use mesh_draping::mesh_core::{shapes, Point3, PolygonSoup};
-use mesh_draping::{InitialMethod, Note, Preset, Seams, Source, Target, Transfer};
+use mesh_draping::mesh_core::{shapes, Point3, PolygonSoup, Positions};
+use mesh_draping::{
+    InitialMethod, Note, Outcome, Population, Preset, Seams, Source, Target, Transfer,
+};
 
 use crate::support::{ball_and_ellipsoid, same_bits, short};
 
