@@ -103,23 +103,19 @@ impl Draping {
         let stand_in = is_dense.then(|| stages.time("stand-in", || StandIn::new(&pair)));
         let stand_in = stand_in.transpose()?;
         let draped_pair = stand_in.as_ref().map_or(&pair, |s| &s.pair);
-        let first_regions = match &stand_in {
-            Some(stand_in) => stand_in.regions(&regions),
-            None => regions.clone(),
+        let on_stand_in = stand_in.as_ref().map(|s| s.regions(&regions));
+        let first_regions = on_stand_in.unwrap_or_else(|| regions.clone());
+        let search = Search {
+            pair: &pair,
+            stand_in: stand_in.as_ref(),
+            preset: &preset,
+            regions: &first_regions,
         };
         let Start {
             shape,
             by_landmarks,
             drape: config,
-        } = stages.time("initial deformation", || {
-            let search = Search {
-                pair: &pair,
-                stand_in: stand_in.as_ref(),
-                preset: &preset,
-                regions: &first_regions,
-            };
-            Start::find(&search, &expected)
-        })?;
+        } = stages.time("initial deformation", || Start::find(&search, &expected))?;
         let initial = shape.positions;
         notes.extend(shape.notes);
         let drape = stages.time_with_parts(DRAPING, |parts| {
@@ -127,10 +123,7 @@ impl Draping {
                 set_up(draped_pair, config, &initial, &first_regions)
             })
         })?;
-        let (by_landmarks, initial) = match &stand_in {
-            Some(stand_in) => stand_in.carry_both(by_landmarks, initial),
-            None => (by_landmarks, initial),
-        };
+        let (by_landmarks, initial) = carried(stand_in.as_ref(), by_landmarks, initial);
         let mut draping = Self {
             by_landmarks,
             initial,
@@ -495,6 +488,14 @@ impl Draping {
             trust: completion.trust,
         });
         completion.positions
+    }
+}
+
+/// Two shapes of what is draped first, which may be one, on the source.
+fn carried(stand_in: Option<&StandIn>, a: Positions, b: Positions) -> (Positions, Positions) {
+    match stand_in {
+        Some(stand_in) => stand_in.carry_both(a, b),
+        None => (a, b),
     }
 }
 
