@@ -7,7 +7,7 @@ use std::process::ExitCode;
 use mesh_core::io::write_atomic;
 use mesh_core::Positions;
 use mesh_draping::mesh_metrics::Report;
-use mesh_draping::{Outcome, Pair, Stages, Transfer};
+use mesh_draping::{Outcome, Pair, Population, Stages, Transfer};
 use mesh_render::{Gallery, Image, Page, View, DISTANCE_AT_TOP};
 
 use crate::args::{
@@ -115,11 +115,7 @@ pub(super) fn drape_files(args: &Args) -> anyhow::Result<Done<'_>> {
     pair.source = pair.source.with_morphs(args.morphs.morphs.into());
     let truth = read_shape(args.truth.as_deref(), &pair)?;
     let from = read_shape(args.from.as_deref(), &pair)?;
-    let prior = stages.time("prior", || {
-        let prior = args.prior.as_ref();
-        let read = prior.map(|folder| read_population(folder, &pair.source));
-        read.transpose()
-    })?;
+    let prior = stages.time("prior", || read_prior(args, &pair))?;
     check_bakeable(&args.bake.maps(), &pair.source, &args.target)?;
     let mut warnings = words::about_inputs(&pair);
     if let Some(file) = pair.source.file() {
@@ -141,15 +137,11 @@ pub(super) fn drape_files(args: &Args) -> anyhow::Result<Done<'_>> {
     if args.symmetric {
         transfer = transfer.symmetric();
     }
-    if let Some(from) = from {
-        transfer = transfer.with_start(from);
-    }
-    if let Some(weight) = args.smooth_change {
-        transfer = transfer.with_smooth_change(weight);
-    }
-    if let Some(prior) = prior {
-        transfer = transfer.with_prior(prior);
-    }
+    transfer = match (from, prior) {
+        (Some(from), _) => started(transfer, from, args.smooth_change),
+        (None, Some(prior)) => transfer.with_prior(prior),
+        (None, None) => transfer,
+    };
     let mut outcome = drape(transfer)?;
     let notes: Vec<String> = words::notes(&outcome.notes).collect();
     warn(&notes);
@@ -169,6 +161,22 @@ pub(super) fn drape_files(args: &Args) -> anyhow::Result<Done<'_>> {
     done.warnings.extend(baked);
     done.tell(&watch, &stages)?;
     Ok(done)
+}
+
+/// The shapes that the source took before, where a folder of them is given.
+fn read_prior(args: &Args, pair: &Pair) -> anyhow::Result<Option<Population>> {
+    let prior = args.prior.as_ref();
+    let read = prior.map(|folder| read_population(folder, &pair.source));
+    read.transpose()
+}
+
+/// From a shape on, which changes as evenly as is asked for.
+fn started(transfer: Transfer, from: Positions, smooth_change: Option<f64>) -> Transfer {
+    let transfer = transfer.with_start(from);
+    match smooth_change {
+        Some(weight) => transfer.with_smooth_change(weight),
+        None => transfer,
+    }
 }
 
 /// A shape of the source in a file, where one is given.
