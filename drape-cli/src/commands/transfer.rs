@@ -137,11 +137,7 @@ pub(super) fn drape_files(args: &Args) -> anyhow::Result<Done<'_>> {
     if args.symmetric {
         transfer = transfer.symmetric();
     }
-    transfer = match (from, prior) {
-        (Some(from), _) => started(transfer, from, args.smooth_change),
-        (None, Some(prior)) => transfer.with_prior(prior),
-        (None, None) => transfer,
-    };
+    transfer = expected(transfer, (from, args.smooth_change), prior);
     let mut outcome = drape(transfer)?;
     let notes: Vec<String> = words::notes(&outcome.notes).collect();
     warn(&notes);
@@ -170,12 +166,20 @@ fn read_prior(args: &Args, pair: &Pair) -> anyhow::Result<Option<Population>> {
     read.transpose()
 }
 
-/// From a shape on, which changes as evenly as is asked for.
-fn started(transfer: Transfer, from: Positions, smooth_change: Option<f64>) -> Transfer {
-    let transfer = transfer.with_start(from);
-    match smooth_change {
+/// From a shape on, which changes as evenly as is asked for; or with the shapes that the source took before.
+fn expected(
+    transfer: Transfer,
+    (from, smooth_change): (Option<Positions>, Option<f64>),
+    prior: Option<Population>,
+) -> Transfer {
+    let transfer = match smooth_change {
         Some(weight) => transfer.with_smooth_change(weight),
         None => transfer,
+    };
+    match (from, prior) {
+        (Some(from), _) => transfer.with_start(from),
+        (None, Some(prior)) => transfer.with_prior(prior),
+        (None, None) => transfer,
     }
 }
 
