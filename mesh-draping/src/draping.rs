@@ -8,12 +8,14 @@ use neural_drape::{
     Drape, DrapeConfig, DrapeError, DrapeInput, DrapeState, Regions, Repair, StepReport,
 };
 
-use crate::ending::{decided_overlap, left_out, repaired};
+use crate::ending::{decided_overlap, left_out, repaired, Incomplete};
 use crate::stages::{DRAPING, REFINING};
 use crate::stand_in::StandIn;
-use crate::start::Start;
+use crate::start::{Expected, Search, Start};
 use crate::symmetric::Opposites;
-use crate::{BrushInput, Error, History, Moves, Note, Outcome, Pair, Preset, Stages, Stroke};
+use crate::{
+    BrushInput, Error, History, Moves, Note, Outcome, Pair, Population, Preset, Stages, Stroke,
+};
 
 /// Iterations on a dense source itself, after its stand-in was draped.
 const N_REFINING: usize = 60;
@@ -61,6 +63,8 @@ pub struct Draping {
     notes: Vec<Note>,
     history: History,
     stages: Stages,
+    /// What the target does not show is taken from these shapes at the end.
+    prior: Option<Population>,
     /// Where the result shall be symmetric.
     opposites: Option<Opposites>,
 }
@@ -72,8 +76,7 @@ pub(crate) struct Beginning {
     pub(crate) notes: Vec<Note>,
     pub(crate) truth: Option<Positions>,
     pub(crate) stages: Stages,
-    /// A shape that nearly fits, where one is known.
-    pub(crate) start: Option<Positions>,
+    pub(crate) expected: Expected,
     pub(crate) is_symmetric: bool,
     pub(crate) is_stand_in_allowed: bool,
 }
@@ -87,7 +90,7 @@ impl Draping {
             mut notes,
             truth,
             mut stages,
-            start,
+            expected,
             is_symmetric,
             is_stand_in_allowed,
         } = beginning;
@@ -95,23 +98,24 @@ impl Draping {
         let opposites = opposites.transpose()?;
         pair.check_landmarks(&pair.landmarks)?;
         pair.check_lengths(&regions, truth.as_ref())?;
-        pair.check_start(start.as_ref())?;
+        expected.check(&pair)?;
         let is_dense = is_stand_in_allowed && StandIn::is_needed(&pair, &preset);
         let stand_in = is_dense.then(|| stages.time("stand-in", || StandIn::new(&pair)));
         let stand_in = stand_in.transpose()?;
         let draped_pair = stand_in.as_ref().map_or(&pair, |s| &s.pair);
-        let first_regions = match &stand_in {
-            Some(stand_in) => stand_in.regions(&regions),
-            None => regions.clone(),
+        let on_stand_in = stand_in.as_ref().map(|s| s.regions(&regions));
+        let first_regions = on_stand_in.unwrap_or_else(|| regions.clone());
+        let search = Search {
+            pair: &pair,
+            stand_in: stand_in.as_ref(),
+            preset: &preset,
+            regions: &first_regions,
         };
         let Start {
             shape,
             by_landmarks,
             drape: config,
-        } = stages.time("initial deformation", || match &start {
-            Some(shape) => Start::of_shape(draped_pair, &preset, shape),
-            None => Start::choose(draped_pair, &preset, &first_regions),
-        })?;
+        } = stages.time("initial deformation", || Start::find(&search, &expected))?;
         let initial = shape.positions;
         notes.extend(shape.notes);
         let drape = stages.time_with_parts(DRAPING, |parts| {
@@ -119,10 +123,7 @@ impl Draping {
                 set_up(draped_pair, config, &initial, &first_regions)
             })
         })?;
-        let (by_landmarks, initial) = match &stand_in {
-            Some(stand_in) => stand_in.carry_both(by_landmarks, initial),
-            None => (by_landmarks, initial),
-        };
+        let (by_landmarks, initial) = carried(stand_in.as_ref(), by_landmarks, initial);
         let mut draping = Self {
             by_landmarks,
             initial,
@@ -137,6 +138,7 @@ impl Draping {
             notes,
             history: History::default(),
             stages,
+            prior: expected.into_population(),
             opposites,
         };
         draping.drape.set_profile(draping.stages.fresh_parts());
@@ -425,6 +427,7 @@ impl Draping {
             Some(stand_in) => stand_in.carry(&end.positions),
             None => end.positions.clone(),
         };
+        let draped = self.completed(draped);
         let draped = match &self.opposites {
             Some(opposites) => opposites.symmetrised(&draped),
             None => draped,
@@ -460,6 +463,38 @@ impl Draping {
             notes: self.notes,
             stages: self.stages,
         })
+    }
+}
+
+impl Draping {
+    /// The end of the source's own drape with what the target does not show as the prior expects it.
+    fn completed(&mut self, draped: Positions) -> Positions {
+        let prior = self.prior.as_ref().filter(|_| self.stand_in.is_none());
+        let completion = prior.and_then(|population| {
+            let end = Incomplete {
+                pair: &self.pair,
+                draped: &draped,
+                counterparts: &self.counterparts(),
+                regions: &self.regions,
+            };
+            end.completed(population)
+        });
+        let Some(completion) = completion else {
+            return draped;
+        };
+        self.notes.push(Note::Completed {
+            n_vertices: completion.n_moved,
+            trust: completion.trust,
+        });
+        completion.positions
+    }
+}
+
+/// Two shapes of what is draped first, which may be one, on the source.
+fn carried(stand_in: Option<&StandIn>, a: Positions, b: Positions) -> (Positions, Positions) {
+    match stand_in {
+        Some(stand_in) => stand_in.carry_both(a, b),
+        None => (a, b),
     }
 }
 

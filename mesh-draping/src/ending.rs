@@ -1,9 +1,11 @@
 //! What a drape came to, as notes, and what its refinement takes from it.
 
-use mesh_core::{UnionFind, VertexId};
+use mesh_core::{Positions, UnionFind, VertexId};
 use mesh_loss::Overlap;
-use neural_drape::{Defects, Drape, OverlapMode, Repair};
+use mesh_metrics::{folded_edges, skinny_triangles, Counterparts};
+use neural_drape::{Defects, Drape, OverlapMode, Regions, Repair};
 
+use crate::population::{Completion, Population};
 use crate::{Note, Pair, Shape};
 
 /// What the refinement takes as lying beyond: what the drape of the stand-in came to.
@@ -39,6 +41,39 @@ pub(crate) fn left_out(drape: &Drape) -> impl Iterator<Item = Note> {
         .into_iter()
         .filter(|&(is_left_out, ..)| is_left_out)
         .map(|(_, shape, share)| Note::LeftOut { shape, share })
+}
+
+/// A result and what is known of it where a population shall complete it.
+pub(crate) struct Incomplete<'a> {
+    pub(crate) pair: &'a Pair,
+    pub(crate) draped: &'a Positions,
+    pub(crate) counterparts: &'a Counterparts,
+    pub(crate) regions: &'a Regions,
+}
+
+impl Incomplete<'_> {
+    /// With the vertices that have no counterpart where the population expects them; none where there are none, or where that
+    /// would make new folds or skinny triangles. Free and rigid parts stay.
+    pub(crate) fn completed(&self, population: &Population) -> Option<Completion> {
+        let target = self.pair.target.draped_over().as_ref();
+        let hits = target.closest_points(self.draped.as_slice());
+        let is_kept = |v: VertexId| {
+            let (regions, hit) = (self.regions, &hits[v.index()]);
+            regions.rigid[v]
+                || regions.attraction[v] == 0.0
+                || self.counterparts.has_vertex(v, hit, target)
+        };
+        let completion = population.completed(self.pair, self.draped, is_kept);
+        let n_before = self.n_defects(self.draped);
+        completion.filter(|c| self.n_defects(&c.positions) <= n_before)
+    }
+
+    fn n_defects(&self, x: &Positions) -> usize {
+        let source = &self.pair.source;
+        let triangulation = source.triangulation();
+        let n_folds = folded_edges(triangulation, source.rest(), x).len();
+        n_folds + skinny_triangles(triangulation, x).len()
+    }
 }
 
 /// What the last stage took out, and what it could not.

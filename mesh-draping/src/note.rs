@@ -62,6 +62,13 @@ pub enum Note {
         /// How many are so far off that they were left out.
         n_left_out: usize,
     },
+    /// What the target does not show was taken from the shapes of a population.
+    Completed {
+        /// How many vertices were moved.
+        n_vertices: usize,
+        /// How much of the way to where the population expects them, 0..=1: what it explains of what is seen.
+        trust: f64,
+    },
     /// Too few landmarks say how the source stands: it was found by its shape.
     PoseAssumed {
         /// How many landmarks there are.
@@ -181,6 +188,12 @@ impl fmt::Display for Note {
                     "{percent:.0} % of the {shape} lies beyond the {other} and was left out"
                 )
             }
+            Self::Completed { n_vertices, trust } => write!(
+                f,
+                "{n_vertices} vertices that the target does not show were taken from the shapes of the prior, which explain \
+                 {:.0} % of how what it shows differs from the source at rest",
+                100.0 * trust
+            ),
             Self::Repaired { .. }
             | Self::Uncrossed { .. }
             | Self::CrossingLeft { .. }
@@ -347,6 +360,10 @@ mod tests {
             Note::LeftOut {
                 shape: Shape::Source,
                 share: 0.25,
+            },
+            Note::Completed {
+                n_vertices: 700,
+                trust: 0.9,
             },
             Note::Repaired { n: 3 },
             Note::Uncrossed { n: 3 },

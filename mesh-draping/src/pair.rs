@@ -105,16 +105,7 @@ impl Pair {
         ])
     }
 
-    /// Whether a shape to start from has a position for each vertex of the source.
-    pub(crate) fn check_start(&self, start: Option<&Positions>) -> Result<(), DrapeError> {
-        let expected = self.source.rest().len();
-        self.check_each([(
-            "the shape to start from",
-            start.map_or(expected, Positions::len),
-        )])
-    }
-
-    fn check_each<const N: usize>(
+    pub(crate) fn check_each<const N: usize>(
         &self,
         lengths: [(&'static str, usize); N],
     ) -> Result<(), DrapeError> {

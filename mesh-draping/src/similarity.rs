@@ -15,14 +15,18 @@ pub struct Similarity {
 }
 
 fn solve(pairs: &[PointPair], sign: impl Fn(&Matrix3<f64>, &Matrix3<f64>) -> f64) -> Similarity {
-    let n = pairs.len().max(1) as f64;
-    let from = pairs.iter().map(|m| m.source.coords).sum::<Vector3>() / n;
-    let to = pairs.iter().map(|m| m.target.coords).sum::<Vector3>() / n;
+    let total: f64 = pairs.iter().map(|m| m.weight).sum();
+    let total = if total > 0.0 { total } else { 1.0 };
+    let from = pairs.iter().map(|m| m.source.coords * m.weight);
+    let from = from.sum::<Vector3>() / total;
+    let to = pairs.iter().map(|m| m.target.coords * m.weight);
+    let to = to.sum::<Vector3>() / total;
     let centered = pairs
         .iter()
-        .map(|m| (m.source.coords - from, m.target.coords - to));
-    let moment: Matrix3<f64> = centered.clone().map(|(a, b)| b * a.transpose()).sum();
-    let spread: f64 = centered.map(|(a, _)| a.norm_squared()).sum();
+        .map(|m| (m.source.coords - from, m.target.coords - to, m.weight));
+    let moments = centered.clone().map(|(a, b, w)| b * a.transpose() * w);
+    let moment: Matrix3<f64> = moments.sum();
+    let spread: f64 = centered.map(|(a, _, w)| a.norm_squared() * w).sum();
 
     let svd = moment.svd(true, true);
     let (turn, trace) = match (svd.u, svd.v_t) {
@@ -45,7 +49,8 @@ fn solve(pairs: &[PointPair], sign: impl Fn(&Matrix3<f64>, &Matrix3<f64>) -> f64
 }
 
 impl Similarity {
-    /// The similarity of least squared error: `R = U diag(1, 1, det U Vᵀ) Vᵀ` with `U S Vᵀ = Σ (b − b̄)(a − ā)ᵀ`.
+    /// The similarity of least squared error: `R = U diag(1, 1, det U Vᵀ) Vᵀ` with `U S Vᵀ = Σ w (b − b̄)(a − ā)ᵀ`, each pair
+    /// counted by its weight w.
     ///
     /// Source: Umeyama 1991, Eq. 40–43. Degenerate input: points in one place give scale 0; no point gives the identity.
     pub fn fit(pairs: &[PointPair]) -> Self {
@@ -104,6 +109,18 @@ mod tests {
         assert!(Similarity::fit_or_mirror(&pairs).is_mirror());
         assert!(Similarity::fit_or_mirror(&pairs).rms(&pairs) < 1e-9);
         assert!(!Similarity::fit(&pairs).is_mirror() && Similarity::fit(&pairs).rms(&pairs) > 0.1);
+    }
+
+    #[test]
+    fn a_pair_of_weight_two_counts_as_two_pairs() {
+        let pairs = pairs(|p| Point3::new(p.x + p.y * p.y, 1.5 * p.y, p.z - 0.3 * p.x));
+        let twice: Vec<PointPair> = pairs.iter().chain(&pairs[..2]).copied().collect();
+        let mut weighted = pairs.clone();
+        weighted[..2].iter_mut().for_each(|p| p.weight = 2.0);
+        let (one, other) = (Similarity::fit(&twice), Similarity::fit(&weighted));
+        for pair in &pairs {
+            assert!((one.apply(&pair.source) - other.apply(&pair.source)).norm() < 1e-9);
+        }
     }
 
     #[test]

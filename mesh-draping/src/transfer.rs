@@ -4,7 +4,8 @@ use mesh_core::{Landmark, Positions};
 use neural_drape::{Regions, StepReport};
 
 use crate::draping::Beginning;
-use crate::{Draping, Error, Outcome, Pair, Parts, Preset, Source, Stages, Target};
+use crate::start::Expected;
+use crate::{Draping, Error, Outcome, Pair, Parts, Population, Preset, Source, Stages, Target};
 
 /// A drape that is about to begin.
 ///
@@ -24,7 +25,7 @@ pub struct Transfer {
     regions: Option<Regions>,
     truth: Option<Positions>,
     stages: Stages,
-    start: Option<Positions>,
+    expected: Expected,
     is_symmetric: bool,
     is_stand_in_allowed: bool,
 }
@@ -49,7 +50,7 @@ impl Transfer {
             regions: None,
             truth: None,
             stages: Stages::off(),
-            start: None,
+            expected: Expected::Nothing,
             is_symmetric: false,
             is_stand_in_allowed: true,
         }
@@ -92,10 +93,30 @@ impl Transfer {
     #[must_use]
     pub fn with_start(self, shape: Positions) -> Self {
         Self {
-            start: Some(shape),
+            expected: Expected::Nearly(shape),
             is_stand_in_allowed: false,
             ..self
         }
+    }
+
+    /// The shape of a population that fits best ([`Population::fit`]) is one more start to try: where it comes out clearly
+    /// better than the others and all of the source has a counterpart, by the trial that decides between them ([`InitialMethod::Tried`](crate::InitialMethod)), the
+    /// drape starts there. At the end, what the target does not show is taken from the population, as far as that explains
+    /// what the target shows and nothing folds.
+    #[must_use]
+    pub fn with_prior(self, population: Population) -> Self {
+        Self {
+            expected: Expected::OneOf(population),
+            ..self
+        }
+    }
+
+    /// The shape changes evenly along its surface from where the drape starts, by this weight: from the frame before, so that
+    /// a motion trembles less and lags behind a little ([`mesh_loss::SmoothChange`]). At 50 it trembles less and lags hardly, at 500 it lags.
+    #[must_use]
+    pub fn with_smooth_change(mut self, weight: f64) -> Self {
+        self.preset.drape = self.preset.drape.with_smooth_change(weight);
+        self
     }
 
     /// The result is as symmetric as the source: at the end, each vertex goes to the middle between itself and the mirror
@@ -136,7 +157,7 @@ impl Transfer {
             notes,
             truth: self.truth,
             stages: self.stages,
-            start: self.start,
+            expected: self.expected,
             is_symmetric: self.is_symmetric,
             is_stand_in_allowed: self.is_stand_in_allowed,
         };

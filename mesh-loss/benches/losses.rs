@@ -11,7 +11,8 @@ use mesh_core::{
 };
 use mesh_loss::{
     AreaKl, Chamfer, Conformal, CornerAngle, Drift, Flip, FoldBarrier, LocalShape, Loss,
-    NormalAgreement, Overlap, SamplingConfig, SurfaceMatcher, TriangleQuality, WorstDistance,
+    NormalAgreement, Overlap, SamplingConfig, SmoothChange, SurfaceMatcher, TriangleQuality,
+    WorstDistance,
 };
 
 const SAMPLING: SamplingConfig = SamplingConfig {
@@ -62,7 +63,7 @@ fn losses(c: &mut Criterion) {
             share: 0.003,
             tolerance: 0.006,
         };
-        let terms: [(&str, &dyn Loss); 11] = [
+        let terms: [(&str, &dyn Loss); 12] = [
             ("chamfer", &Chamfer(&matches)),
             ("worst_distance", &worst),
             ("normal_agreement", &NormalAgreement(&matches)),
@@ -74,6 +75,7 @@ fn losses(c: &mut Criterion) {
             ("conformal", &Conformal::new(&t, &rest)),
             ("local_shape", &LocalShape::new(&t, &rest)),
             ("drift", &Drift::new(&t, &rest)),
+            ("smooth_change", &SmoothChange::new(&t, &rest)),
         ];
         let mut group = c.benchmark_group("loss");
         group.throughput(Throughput::Elements(x.len() as u64));

@@ -15,6 +15,7 @@
 //! | one-rings turned and scaled only | [`LocalShape`] | beyond the paper |
 //! | sliding along the surface | [`Drift`] | beyond the paper |
 //! | near in space and far along the surface | [`Contact`] | beyond the paper, after Li et al. 2020 |
+//! | change that is uneven along the surface | [`SmoothChange`] | beyond the paper |
 //!
 //! [`SurfaceMatcher::resample`] draws samples and finds closest points; it alone changes what the distance terms see.
 //!
@@ -56,6 +57,7 @@ mod loss;
 mod matcher;
 mod matches;
 mod normal_agreement;
+mod smooth_change;
 mod surfaces;
 mod triangle_quality;
 mod worst_distance;
@@ -76,6 +78,7 @@ pub use loss::Loss;
 pub use matcher::SurfaceMatcher;
 pub use matches::{Beyond, Matches, Overlap, SamplingConfig, SurfaceMatch};
 pub use normal_agreement::NormalAgreement;
+pub use smooth_change::SmoothChange;
 pub use triangle_quality::TriangleQuality;
 pub use worst_distance::WorstDistance;
 

@@ -143,7 +143,7 @@ impl Stage {
 
 impl Weights {
     /// Each weight with its name.
-    fn by_name(&self) -> [(&'static str, f64); 12] {
+    fn by_name(&self) -> [(&'static str, f64); 13] {
         [
             ("chamfer", self.chamfer),
             ("worst_distance", self.worst_distance),
@@ -157,6 +157,7 @@ impl Weights {
             ("conformal", self.conformal),
             ("local_shape", self.local_shape),
             ("drift", self.drift),
+            ("smooth_change", self.smooth_change),
         ]
     }
 }

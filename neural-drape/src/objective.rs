@@ -9,7 +9,7 @@ use std::sync::Arc;
 use mesh_core::{Landmark, Positions, Profile, Triangulation, Vector3, VertexData};
 use mesh_loss::{
     AreaKl, Chamfer, Conformal, CornerAngle, Drift, Flip, FoldBarrier, LandmarkDistance,
-    LocalShape, Loss, Matches, NormalAgreement, TriangleQuality, WorstDistance,
+    LocalShape, Loss, Matches, NormalAgreement, SmoothChange, TriangleQuality, WorstDistance,
 };
 
 use crate::config::{AngleReference, DrapeConfig};
@@ -101,6 +101,7 @@ pub(crate) struct StructuralLoss {
     conformal: Conformal,
     local_shape: LocalShape,
     drift: Drift,
+    smooth_change: SmoothChange,
 }
 
 impl StructuralLoss {
@@ -123,6 +124,7 @@ impl StructuralLoss {
             conformal: Conformal::new(t, rest),
             local_shape: LocalShape::new(t, rest),
             drift: Drift::new(t, initial),
+            smooth_change: SmoothChange::new(t, initial),
         }
     }
 
@@ -132,7 +134,7 @@ impl StructuralLoss {
     }
 
     /// Eq. 3, each term by λ, then Eq. 4 and what is beyond the paper.
-    pub(crate) fn terms(&self, w: &Weights) -> [Term<'_>; 8] {
+    pub(crate) fn terms(&self, w: &Weights) -> [Term<'_>; 9] {
         [
             ("angles", w.corner_angle, &self.corner_angle),
             ("areas", w.area_kl, &self.area_kl),
@@ -142,6 +144,7 @@ impl StructuralLoss {
             ("conformal", w.conformal, &self.conformal),
             ("local shape", w.local_shape, &self.local_shape),
             ("drift", w.drift, &self.drift),
+            ("smooth change", w.smooth_change, &self.smooth_change),
         ]
     }
 

@@ -44,6 +44,9 @@ pub struct Weights {
     pub local_shape: f64,
     /// [`mesh_loss::Drift`], from where each stage starts
     pub drift: f64,
+    /// [`mesh_loss::SmoothChange`], since the drape started
+    #[serde(default)]
+    pub smooth_change: f64,
 }
 
 impl Weights {
@@ -61,6 +64,7 @@ impl Weights {
         conformal: 0.0,
         local_shape: 0.0,
         drift: 0.0,
+        smooth_change: 0.0,
     };
 
     /// These weights with both terms of Eq. 3, angles and areas, at λ: `L = L_d + λ L_s` (Eq. 1).
@@ -94,6 +98,7 @@ impl Weights {
             conformal: mix(a.conformal, b.conformal),
             local_shape: mix(a.local_shape, b.local_shape),
             drift: mix(a.drift, b.drift),
+            smooth_change: mix(a.smooth_change, b.smooth_change),
         }
     }
 }
@@ -110,6 +115,16 @@ impl DrapeConfig {
             start += stage.n_iterations;
         }
         self.stages.last().map_or(Weights::ZERO, |s| s.to)
+    }
+
+    /// This run with a weight on [`mesh_loss::SmoothChange`] all the way.
+    #[must_use]
+    pub fn with_smooth_change(mut self, weight: f64) -> Self {
+        for stage in &mut self.stages {
+            stage.from.smooth_change = weight;
+            stage.to.smooth_change = weight;
+        }
+        self
     }
 
     /// The iteration at which each stage starts.

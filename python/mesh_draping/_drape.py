@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from functools import cached_property
-from typing import Any, Callable, Iterator, Optional, Sequence, Union
+from typing import Any, Callable, Iterable, Iterator, Optional, Sequence, Union
 
 from . import _native
 from ._judge import positions
@@ -57,9 +57,14 @@ class Drape:
     ``weights``: how strongly each vertex is attracted, a file of lines "vertex weight" or ``property:NAME``.
     ``hidden``: False drapes inner pieces that no one named like the rest.
     ``symmetric``: True makes the result as symmetric as the source is.
+    ``prior``: shapes that the source took before, as results, paths or arrays of shape (n, 3): what to expect of the next one.
+    The one of them and those between that fits best is one more start to try, and what the target does not show is taken
+    from them.
     ``truth``: where each vertex belongs, to judge by: a path, or an array of shape (n, 3).
     ``start``: a shape of the source that nearly fits, likewise: the result of the frame before. No start is searched then, and
     the run is a third as long.
+    ``smooth_change``: weight of an even change along the surface from where the drape starts: over the frames of a motion less
+    trembling. 50 is a good value; with 500 it lags behind.
     ``config``: a TOML file of settings over those of the preset. ``settings``: single settings over both, by the names of
     :func:`mesh_draping.settings`, such as ``overlap="source-partial"`` or ``sampling={"n_samples": 4000}``.
     """
@@ -78,6 +83,8 @@ class Drape:
         weights: Optional[str] = None,
         hidden: bool = True,
         symmetric: bool = False,
+        smooth_change: float = 0.0,
+        prior: Iterable[Any] = (),
         truth: Any = None,
         start: Any = None,
         config: Optional[Path] = None,
@@ -95,6 +102,8 @@ class Drape:
             weights=weights,
             hidden=hidden,
             symmetric=symmetric,
+            smooth_change=smooth_change,
+            prior=[shape for shape in (positions(self.source, one) for one in prior) if shape is not None],
         )
         self._native = _native.Draping(inputs, chosen, *(positions(self.source, shape) for shape in (truth, start)))
 

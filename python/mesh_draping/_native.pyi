@@ -113,6 +113,8 @@ class Inputs:
         weights: Optional[str],
         hidden: bool,
         symmetric: bool,
+        smooth_change: float,
+        prior: Sequence[_Rows],
     ) -> Inputs: ...
 
 @final

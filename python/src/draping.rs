@@ -3,7 +3,8 @@
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use mesh_draping::{Parts, Transfer};
+use mesh_draping::mesh_core::Positions;
+use mesh_draping::{Parts, Population, Transfer};
 use numpy::PyArray2;
 use pyo3::prelude::*;
 
@@ -34,12 +35,16 @@ pub(crate) struct Inputs {
     landmarks: Py<Landmarks>,
     parts: Parts,
     is_symmetric: bool,
+    /// Weight of an even change along the surface.
+    smooth_change: f64,
+    /// Shapes that the source took before.
+    prior: Vec<Positions>,
 }
 
 #[pymethods]
 impl Inputs {
     #[new]
-    #[pyo3(signature = (source, target, landmarks, *, free, rigid, draped, weights, hidden, symmetric))]
+    #[pyo3(signature = (source, target, landmarks, *, free, rigid, draped, weights, hidden, symmetric, smooth_change, prior))]
     #[allow(
         clippy::too_many_arguments,
         reason = "keywords of a call from Python; each is one option of the command line"
@@ -54,8 +59,12 @@ impl Inputs {
         weights: Option<String>,
         hidden: bool,
         symmetric: bool,
-    ) -> Self {
-        Self {
+        smooth_change: f64,
+        prior: Vec<Rows<'_>>,
+    ) -> PyResult<Self> {
+        let prior = prior.iter();
+        let prior = prior.map(|shape| source.gathered(shape, "a shape of the prior"));
+        Ok(Self {
             source: source.clone(),
             target: target.clone(),
             landmarks,
@@ -67,7 +76,9 @@ impl Inputs {
                 is_hidden_draped: !hidden,
             },
             is_symmetric: symmetric,
-        }
+            smooth_change,
+            prior: prior.collect::<PyResult<_>>()?,
+        })
     }
 }
 
@@ -88,13 +99,21 @@ impl Draping {
         if let Some(truth) = truth {
             transfer = transfer.with_truth(inputs.source.gathered(&truth, "the truth")?);
         }
+        if inputs.smooth_change != 0.0 {
+            transfer = transfer.with_smooth_change(inputs.smooth_change);
+        }
         if inputs.is_symmetric {
             transfer = transfer.symmetric();
         }
         if let Some(start) = start {
             transfer = transfer.with_start(inputs.source.gathered(&start, "the start")?);
         }
-        let draping = waited(py, move || transfer.start())?.map_err(told)?;
+        let prior = inputs.prior.clone();
+        let start = move || match Population::of(&prior) {
+            Some(population) => transfer.with_prior(population).start(),
+            None => transfer.start(),
+        };
+        let draping = waited(py, start)?.map_err(told)?;
         Ok(Self {
             source: inputs.source.clone(),
             iteration: AtomicUsize::new(draping.iteration()),

@@ -11,22 +11,27 @@ use crate::shapes::{Source, Target};
 
 /// A surface that rays are sent to.
 #[pyclass(frozen, module = "mesh_draping")]
-pub(crate) struct Surface(TriangleBvh);
+pub(crate) struct Surface(Of);
+
+/// Whose surface it is: a source has its hierarchy already.
+enum Of {
+    Source(mesh_draping::Source),
+    Target(TriangleBvh),
+}
 
 #[pymethods]
 impl Surface {
     /// The surface of a source at rest.
     #[staticmethod]
     fn of_source(source: &Source) -> Self {
-        let triangles = source.0.triangulation().corners(source.0.rest());
-        Self(TriangleBvh::new(triangles.collect()))
+        Self(Of::Source(source.0.clone()))
     }
 
     /// The surface of a target; none where it is a cloud.
     #[staticmethod]
     fn of_target(target: &Target) -> Option<Self> {
         let triangles = target.0.triangles();
-        (!triangles.is_empty()).then(|| Self(TriangleBvh::new(triangles)))
+        (!triangles.is_empty()).then(|| Self(Of::Target(TriangleBvh::new(triangles))))
     }
 
     /// How far each ray goes before it meets the surface, in lengths of its direction: infinity where it does not.
@@ -49,9 +54,13 @@ impl Surface {
 
 impl Surface {
     fn distances(&self, origins: &[Point3], directions: &[Vector3]) -> Vec<f64> {
+        let bvh = match &self.0 {
+            Of::Source(source) => source.bvh(),
+            Of::Target(bvh) => bvh,
+        };
         let rays = origins.par_iter().zip(directions).with_min_len(256);
         let distance = |(origin, direction): (&Point3, &Vector3)| {
-            let hit = self.0.first_hit(origin, direction);
+            let hit = bvh.first_hit(origin, direction);
             hit.map_or(f64::INFINITY, |hit| hit.distance)
         };
         rays.map(distance).collect()

@@ -96,7 +96,7 @@ fn frames_of_a_motion_start_from_those_before() {
         std::fs::copy(place.path("target.ply"), place.path(name)).expect("a copy");
     }
     std::fs::copy(place.path("landmarks.json"), place.path("target.json")).expect("a copy");
-    let line = "batch source.obj target.ply b.ply c.ply -l {target}.json -o done/{target}.obj --config short.toml --sequence";
+    let line = "batch source.obj target.ply b.ply c.ply -l {target}.json -o done/{target}.obj --config short.toml --sequence --smooth-change 50";
     place.drape(line).well();
     let rows: serde_json::Value =
         serde_json::from_str(&place.read("drape-batch/results.json")).expect("JSON");
@@ -106,6 +106,10 @@ fn frames_of_a_motion_start_from_those_before() {
     assert!(!commands[0].contains("--from") && commands[0].contains("--landmarks"));
     assert!(commands[1].contains("done/target.obj") && commands[2].contains("done/b.obj"));
     assert!(!commands[1].contains("--landmarks"));
+    let evenly: Vec<bool> = (commands.iter())
+        .map(|command| command.contains("--smooth-change=50"))
+        .collect();
+    assert_eq!(evenly, [false, true, true]);
     let again = place.drape(line).well();
     assert!(
         again.stderr.starts_with("3 runs, 3 done before"),

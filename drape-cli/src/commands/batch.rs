@@ -45,8 +45,11 @@ pub(crate) struct Args {
     /// may lack from the second frame on
     #[arg(long, conflicts_with_all = ["shard", "jobs"])]
     sequence: bool,
-    /// Start every drape from the shape that fits best of those that the results in this folder span; not a folder that
-    /// this batch writes to
+    /// Weight of an even change along the surface from frame to frame: less trembling. 50 is a good value; with 500 it lags
+    /// behind
+    #[arg(long, value_name = "WEIGHT", requires = "sequence")]
+    smooth_change: Option<f64>,
+    /// Expect shapes like the results in this folder, as `transfer` does; not a folder that this batch writes to
     #[arg(long, value_name = "FOLDER", conflicts_with = "sequence")]
     prior: Option<PathBuf>,
 }
@@ -145,13 +148,20 @@ fn tasks(args: &Args) -> anyhow::Result<Vec<Task>> {
                 .filter(|_| args.sequence)
                 .map(|before| before.output.clone()),
             method: method.clone(),
-            options: options.clone(),
+            options: options_of(args, &options, tasks.is_empty()),
             seed: settings.seed.unwrap_or(0),
             picture: output.with_extension("png"),
             output,
         });
     }
     Ok(tasks)
+}
+
+/// The options of a task: those of all, and for the frames of a motion after the first how evenly they change.
+fn options_of(args: &Args, options: &[String], is_first: bool) -> Vec<String> {
+    let smooth_change = args.smooth_change.filter(|_| !is_first);
+    let smooth_change = smooth_change.map(|weight| format!("--smooth-change={weight}"));
+    options.iter().cloned().chain(smooth_change).collect()
 }
 
 /// Refuses a prior that would grow while the batch runs: results would depend on their order.

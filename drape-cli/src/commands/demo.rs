@@ -30,6 +30,7 @@ pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let transfer = transfer::Args {
         from: None,
         prior: None,
+        smooth_change: None,
         symmetric: false,
         bake: BakeArgs::none(),
         profile: ProfileArgs { profile: false },

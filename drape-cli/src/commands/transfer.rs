@@ -4,11 +4,10 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use anyhow::ensure;
 use mesh_core::io::write_atomic;
 use mesh_core::Positions;
 use mesh_draping::mesh_metrics::Report;
-use mesh_draping::{Outcome, Pair, Stages, Transfer};
+use mesh_draping::{Outcome, Pair, Population, Stages, Transfer};
 use mesh_render::{Gallery, Image, Page, View, DISTANCE_AT_TOP};
 
 use crate::args::{
@@ -59,8 +58,12 @@ pub(crate) struct Args {
     /// as long
     #[arg(long, value_name = "FILE")]
     pub(super) from: Option<PathBuf>,
-    /// Start from the shape that fits best of those that the results in this folder span: their mean and the modes in which
-    /// they differ, fitted to three landmarks or more. No start is searched, and the run is a third as long
+    /// Weight of an even change along the surface from that shape: less trembling over the frames of a motion. 50 is a
+    /// good value; with 500 it lags behind
+    #[arg(long, value_name = "WEIGHT", requires = "from")]
+    pub(super) smooth_change: Option<f64>,
+    /// Expect a shape like the results in this folder: their mean and the modes in which they differ. The one that fits best is
+    /// one more start to try, and what the target does not show is taken from them
     #[arg(long, value_name = "FOLDER", conflicts_with = "from")]
     pub(super) prior: Option<PathBuf>,
     /// Make the result as symmetric as the source is
@@ -85,9 +88,6 @@ pub(crate) struct Args {
 const REPORT_PICTURE: usize = 440;
 /// Pixels along the side of a picture in a PNG file.
 const PNG_PICTURE: usize = 420;
-
-/// Landmarks without which a population does not find a target.
-const LEAST_FOR_PRIOR: usize = 3;
 
 pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let figures = drape_files(args)?.figures();
@@ -114,7 +114,8 @@ pub(super) fn drape_files(args: &Args) -> anyhow::Result<Done<'_>> {
     let mut pair = stages.time("reading", || inputs.read())?;
     pair.source = pair.source.with_morphs(args.morphs.morphs.into());
     let truth = read_shape(args.truth.as_deref(), &pair)?;
-    let start = stages.time("start", || start(args, &pair))?;
+    let from = read_shape(args.from.as_deref(), &pair)?;
+    let prior = stages.time("prior", || read_prior(args, &pair))?;
     check_bakeable(&args.bake.maps(), &pair.source, &args.target)?;
     let mut warnings = words::about_inputs(&pair);
     if let Some(file) = pair.source.file() {
@@ -136,9 +137,7 @@ pub(super) fn drape_files(args: &Args) -> anyhow::Result<Done<'_>> {
     if args.symmetric {
         transfer = transfer.symmetric();
     }
-    if let Some(start) = start {
-        transfer = transfer.with_start(start);
-    }
+    transfer = expected(transfer, (from, args.smooth_change), prior);
     let mut outcome = drape(transfer)?;
     let notes: Vec<String> = words::notes(&outcome.notes).collect();
     warn(&notes);
@@ -160,18 +159,28 @@ pub(super) fn drape_files(args: &Args) -> anyhow::Result<Done<'_>> {
     Ok(done)
 }
 
-/// The shape to start from, where one is given.
-fn start(args: &Args, pair: &Pair) -> anyhow::Result<Option<Positions>> {
-    if let Some(folder) = &args.prior {
-        let followed = pair.landmarks.iter().filter(|l| l.is_followed());
-        ensure!(
-            followed.count() >= LEAST_FOR_PRIOR,
-            "--prior needs {LEAST_FOR_PRIOR} landmarks or more to find where the target stands"
-        );
-        let population = read_population(folder, &pair.source)?;
-        return Ok(Some(population.fit(pair)));
+/// The shapes that the source took before, where a folder of them is given.
+fn read_prior(args: &Args, pair: &Pair) -> anyhow::Result<Option<Population>> {
+    let prior = args.prior.as_ref();
+    let read = prior.map(|folder| read_population(folder, &pair.source));
+    read.transpose()
+}
+
+/// From a shape on, which changes as evenly as is asked for; or with the shapes that the source took before.
+fn expected(
+    transfer: Transfer,
+    (from, smooth_change): (Option<Positions>, Option<f64>),
+    prior: Option<Population>,
+) -> Transfer {
+    let transfer = match smooth_change {
+        Some(weight) => transfer.with_smooth_change(weight),
+        None => transfer,
+    };
+    match (from, prior) {
+        (Some(from), _) => transfer.with_start(from),
+        (None, Some(prior)) => transfer.with_prior(prior),
+        (None, None) => transfer,
     }
-    read_shape(args.from.as_deref(), pair)
 }
 
 /// A shape of the source in a file, where one is given.

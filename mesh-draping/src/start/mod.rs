@@ -1,5 +1,6 @@
 //! Which of several starts is carried on: each is tried on a coarse stand-in, and judged by what it comes to.
 
+mod expected;
 mod trial;
 
 use mesh_core::{Landmark, Positions, UnitFrame};
@@ -12,14 +13,59 @@ use rayon::prelude::*;
 use crate::initial::ENOUGH_TO_STAND;
 use crate::stand_in::StandIn;
 use crate::{
-    adjusted, initial_deformation, Draping, Error, InitialMethod, InitialShape, Pair, Preset,
+    adjusted, initial_deformation, Draping, Error, InitialMethod, InitialShape, Pair, Population,
+    Preset,
 };
+pub(crate) use expected::Expected;
 use trial::Trial;
 
 /// Vertices of the stand-in that starts are tried on.
 const N_VERTICES: usize = 1200;
 /// Where the best trial comes to more than this, a network leads one more: pairs that come to less end above Q 0.99 anyhow.
 const POOR: f64 = 0.7;
+
+/// What a start is searched for.
+pub(crate) struct Search<'a> {
+    pub(crate) pair: &'a Pair,
+    /// What is draped first in the place of its source.
+    pub(crate) stand_in: Option<&'a StandIn>,
+    pub(crate) preset: &'a Preset,
+    /// Those of what is draped first.
+    pub(crate) regions: &'a Regions,
+}
+
+impl Search<'_> {
+    /// The pair whose source is draped first.
+    fn draped_pair(&self) -> &Pair {
+        self.stand_in.map_or(self.pair, |s| &s.pair)
+    }
+
+    /// Whether starts are tried that the settings know.
+    fn is_tried(&self) -> bool {
+        matches!(
+            self.preset.initial,
+            InitialMethod::Tried | InitialMethod::TriedByVertices
+        )
+    }
+
+    /// The shape of a population that fits best, brought to the landmarks; `near` tells how the target stands where
+    /// landmarks do not.
+    fn fitted(&self, population: &Population, near: &Positions) -> Result<Positions, Error> {
+        let fitted = match self.stand_in {
+            Some(stand_in) => stand_in.pick(&population.fit_near(self.pair, &stand_in.carry(near))),
+            None => population.fit_near(self.pair, near),
+        };
+        brought(self.draped_pair(), &fitted)
+    }
+}
+
+/// A shape that nearly fits, brought to the landmarks.
+fn brought(pair: &Pair, shape: &Positions) -> Result<Positions, Error> {
+    match pair.n_followed() {
+        0 => Ok(shape.clone()),
+        _ => adjusted(pair, shape),
+    }
+}
 
 /// Where a drape starts, and with which settings it goes on from there.
 pub(crate) struct Start {
@@ -32,39 +78,39 @@ pub(crate) struct Start {
 }
 
 impl Start {
-    /// The start that the settings name; for [`InitialMethod::Tried`] and
-    /// [`InitialMethod::TriedByVertices`] the best of several.
+    /// The start for what is known of the result.
     ///
     /// # Errors
-    /// As [`initial_deformation`].
-    pub(crate) fn choose(pair: &Pair, preset: &Preset, regions: &Regions) -> Result<Self, Error> {
-        let shape = initial_deformation(pair, preset.initial)?;
+    /// As [`initial_deformation`] or [`adjusted`].
+    pub(crate) fn find(search: &Search<'_>, expected: &Expected) -> Result<Self, Error> {
+        match expected {
+            Expected::Nothing => Self::choose(search, None),
+            Expected::OneOf(population) => Self::choose(search, Some(population)),
+            Expected::Nearly(shape) => Self::of_shape(search, shape),
+        }
+    }
+
+    /// The start that the settings name; for [`InitialMethod::Tried`] and [`InitialMethod::TriedByVertices`], and where
+    /// there is a population, the best of several.
+    fn choose(search: &Search<'_>, population: Option<&Population>) -> Result<Self, Error> {
+        let preset = search.preset;
+        let shape = initial_deformation(search.draped_pair(), preset.initial)?;
         let mut start = Self {
             by_landmarks: shape.positions.clone(),
             shape,
             drape: preset.drape.clone(),
         };
-        let is_tried = matches!(
-            preset.initial,
-            InitialMethod::Tried | InitialMethod::TriedByVertices
-        );
-        if is_tried {
+        if search.is_tried() || population.is_some() {
             // What cannot be tried is passed over: the first start needs no trial.
-            let _ = start.improve(pair, preset, regions);
+            let _ = start.improve(search, population);
         }
         Ok(start)
     }
 
     /// A shape that nearly fits, brought to the landmarks, and the end of a run from there.
-    ///
-    /// # Errors
-    /// As [`adjusted`].
-    pub(crate) fn of_shape(pair: &Pair, preset: &Preset, shape: &Positions) -> Result<Self, Error> {
-        let positions = if pair.n_followed() == 0 {
-            shape.clone()
-        } else {
-            adjusted(pair, shape)?
-        };
+    fn of_shape(search: &Search<'_>, shape: &Positions) -> Result<Self, Error> {
+        let preset = search.preset;
+        let positions = brought(search.draped_pair(), shape)?;
         Ok(Self {
             by_landmarks: positions.clone(),
             shape: InitialShape {
@@ -75,35 +121,47 @@ impl Start {
         })
     }
 
-    /// Tries this start and those that are led along the surfaces, and becomes the best of them; where all are poor, a
-    /// network leads the best of them once more.
+    /// Tries this start, those that are led along the surfaces and that of a population, and becomes the best of them; where
+    /// all are poor, a network leads the best of them once more.
     ///
     /// # Errors
     /// This start cannot be tried; nothing is changed.
-    fn improve(&mut self, pair: &Pair, preset: &Preset, regions: &Regions) -> Result<(), Error> {
+    fn improve(
+        &mut self,
+        search: &Search<'_>,
+        population: Option<&Population>,
+    ) -> Result<(), Error> {
+        let (pair, preset) = (search.draped_pair(), search.preset);
         let stand_in = StandIn::with_vertices(pair, N_VERTICES)?;
-        let regions = stand_in.regions(regions);
+        let regions = stand_in.regions(search.regions);
         let first = stand_in.pick(&self.shape.positions);
         let trial = |start: Positions| -> Result<Tried, Error> {
             let trial = Trial::best(&stand_in.pair, preset, &regions, &start)?;
             Ok(Tried { start, trial })
         };
-        let (own, led) = rayon::join(
+        let (own, mut others) = rayon::join(
             || trial(first),
             || -> Vec<Tried> {
-                let starts = led(pair, &stand_in).into_par_iter();
-                let trials: Vec<Result<Tried, Error>> = starts.map(trial).collect();
+                let starts = match search.is_tried() {
+                    true => led(pair, &stand_in),
+                    false => Vec::new(),
+                };
+                let trials: Vec<Result<Tried, Error>> = starts.into_par_iter().map(trial).collect();
                 trials.into_iter().flatten().collect()
             },
         );
         let own = own?;
+        // Where a part has no counterpart, a shape that fits the rest is no better start; that part is completed at the end.
+        let prior = population.filter(|_| !own.trial.is_any_left_out);
+        let fitted = prior.and_then(|p| search.fitted(p, &self.shape.positions).ok());
+        others.extend(fitted.and_then(|x| trial(stand_in.pick(&x)).ok()));
         let cost = |tried: &&Tried| tried.trial.cost();
         let cheapest = |a: &&Tried, b: &&Tried| cost(a).total_cmp(&cost(b));
-        let better = led
+        let better = others
             .iter()
-            .filter(|led| led.trial.is_better_start_than(&own.trial));
+            .filter(|other| other.trial.is_better_start_than(&own.trial));
         let chosen = &better.min_by(cheapest).unwrap_or(&own).trial;
-        let best = led.iter().chain([&own]).min_by(cheapest).unwrap_or(&own);
+        let best = others.iter().chain([&own]).min_by(cheapest).unwrap_or(&own);
         // Without landmarks a smooth map drifts, and a rigid body is none to it.
         let can_lead = preset.initial == InitialMethod::Tried
             && pair.n_followed() >= ENOUGH_TO_STAND

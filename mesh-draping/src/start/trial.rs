@@ -45,7 +45,7 @@ pub(super) struct Trial {
     /// The share of what was not left out that is not reached, the larger of both shapes.
     unreached: f64,
     /// Whether anything was taken as lying beyond the other shape.
-    is_any_left_out: bool,
+    pub(super) is_any_left_out: bool,
     /// Shares of the source and of the target that were left out.
     left_out: [f64; 2],
 }

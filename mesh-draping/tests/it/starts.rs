@@ -1,7 +1,9 @@
 //! Which start is taken, and what is left out of a shape.
 
-use mesh_draping::mesh_core::{shapes, Point3, PolygonSoup};
-use mesh_draping::{InitialMethod, Note, Preset, Seams, Source, Target, Transfer};
+use mesh_draping::mesh_core::{shapes, Point3, PolygonSoup, Positions};
+use mesh_draping::{
+    InitialMethod, Note, Outcome, Population, Preset, Seams, Source, Target, Transfer,
+};
 
 use crate::support::{ball_and_ellipsoid, same_bits, short};
 
@@ -118,4 +120,67 @@ fn a_shape_that_nearly_fits_is_a_start_of_a_short_run() {
     let wrong = Transfer::of_pair(pair, short(3)).with_start(vec![Point3::origin()].into());
     let told = wrong.start().err().map(|error| error.to_string());
     assert!(told.is_some_and(|told| told.contains("the shape to start from")));
+}
+
+/// Balls that are drawn out in different ways, where the target of [`ball_and_ellipsoid`] is.
+fn solved(rest: &Positions) -> Vec<Positions> {
+    let sides = [
+        [4.0, 3.0, 2.0],
+        [4.0, 2.5, 3.0],
+        [3.5, 3.0, 3.0],
+        [4.5, 3.5, 2.5],
+    ];
+    let drawn_out =
+        |[x, y, z]: [f64; 3]| rest.map(|p| Point3::new(x * p.x + 10.0, y * p.y, z * p.z - 5.0));
+    sides.map(drawn_out).to_vec()
+}
+
+/// Shapes that say nothing of the target change no bit.
+#[test]
+fn a_prior_that_fits_no_better_is_no_start() {
+    let pair = ball_and_ellipsoid(6);
+    let flat = |y: f64| {
+        pair.source
+            .rest()
+            .map(|p| Point3::new(p.x, y * p.y, 0.1 * p.z))
+    };
+    let useless = Population::of(&[flat(1.0), flat(0.2)]).expect("two shapes");
+    let alone = Transfer::of_pair(pair.clone(), short(6)).run().unwrap();
+    let led = Transfer::of_pair(pair.clone(), short(6)).with_prior(useless);
+    let led = led.run().unwrap();
+    assert!(same_bits(&alone.initial, &led.initial));
+    assert!(same_bits(&alone.draped, &led.draped));
+
+    let other = Population::of(&[vec![Point3::origin()].into()]).expect("a shape");
+    let wrong = Transfer::of_pair(pair, short(6)).with_prior(other).start();
+    let told = wrong.err().map(|error| error.to_string());
+    assert!(told.is_some_and(|told| told.contains("a shape of the population")));
+}
+
+#[test]
+fn what_a_scan_does_not_show_is_taken_from_the_prior() {
+    let mut pair = ball_and_ellipsoid(6);
+    let right = pair.target.soup().clone();
+    let mut scan = right.clone();
+    let is_seen = |row: &u32| right.positions[*row as usize].z < -4.5;
+    let faces = right.faces.iter().filter(|face| face.iter().all(is_seen));
+    scan.faces = faces.cloned().collect();
+    pair.target = Target::of_soup(scan).expect("half an ellipsoid");
+    pair.landmarks.retain(|l| l.target.z < -4.5);
+    let population = Population::of(&solved(pair.source.rest())).expect("four shapes");
+    let truth = pair
+        .source
+        .rest()
+        .map(|p| Point3::new(4.0 * p.x + 10.0, 3.0 * p.y, 2.5 * p.z - 5.0));
+    let run = |transfer: Transfer| {
+        let outcome = transfer.with_truth(truth.clone()).run();
+        outcome.expect("the scan can be draped")
+    };
+    let alone = run(Transfer::of_pair(pair.clone(), short(30)));
+    let led = run(Transfer::of_pair(pair, short(30)).with_prior(population));
+    let is_completed = |note: &Note| matches!(note, Note::Completed { .. });
+    assert!(led.notes.iter().any(is_completed), "{:?}", led.notes);
+    let miss = |outcome: &Outcome| outcome.report.truth.as_ref().map(|t| t.mean);
+    let (alone, led) = (miss(&alone).unwrap(), miss(&led).unwrap());
+    assert!(led < alone, "{led} with the prior, {alone} without");
 }

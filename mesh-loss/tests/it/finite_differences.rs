@@ -9,7 +9,8 @@ use mesh_core::{
 };
 use mesh_loss::{
     AreaKl, Chamfer, Conformal, Contact, ContactPair, CornerAngle, Drift, Flip, FoldBarrier,
-    LandmarkDistance, LocalShape, Loss, Matches, NormalAgreement, SamplingConfig, SurfaceMatcher,
+    LandmarkDistance, LocalShape, Loss, Matches, NormalAgreement, SamplingConfig, SmoothChange,
+    SurfaceMatcher,
     TriangleQuality, WorstDistance,
 };
 use proptest::prelude::*;
@@ -120,7 +121,7 @@ proptest! {
     fn structural_terms(shape in 0..5usize, seed in 0..10_000u64) {
         let mut s = setup(shape, seed, 0.1);
         let (t, x) = (&s.triangulation, &s.moved);
-        let terms: [&dyn Loss; 8] = [
+        let terms: [&dyn Loss; 9] = [
             &CornerAngle::new(t, &s.rest),
             &AreaKl::new(t, &s.rest),
             &TriangleQuality::new(t, 0.9),
@@ -128,6 +129,7 @@ proptest! {
             &FoldBarrier::new(t, &s.rest, 0.95),
             &Conformal::new(t, &s.rest),
             &Drift::new(t, &s.rest),
+            &SmoothChange::new(t, &s.rest),
             &LocalShape::new(t, &s.rest),
         ];
         for term in terms {

@@ -9,7 +9,7 @@ use mesh_core::{
 };
 use mesh_loss::{
     AreaKl, Chamfer, Conformal, CornerAngle, Drift, Flip, FoldBarrier, LocalShape, Loss,
-    SamplingConfig, SurfaceMatcher, TriangleQuality, WorstDistance,
+    SamplingConfig, SmoothChange, SurfaceMatcher, TriangleQuality, WorstDistance,
 };
 use proptest::prelude::*;
 
@@ -26,7 +26,7 @@ fn structural_terms_and_their_gradients_vanish_at_rest() {
     for shape in 0..all_shapes().len() {
         let s = setup(shape, 1, 0.0);
         let t = &s.triangulation;
-        let terms: [&dyn Loss; 8] = [
+        let terms: [&dyn Loss; 9] = [
             &CornerAngle::new(t, &s.rest),
             &AreaKl::new(t, &s.rest),
             &TriangleQuality::new(t, 0.1),
@@ -34,6 +34,7 @@ fn structural_terms_and_their_gradients_vanish_at_rest() {
             &FoldBarrier::new(t, &s.rest, 0.3),
             &Conformal::new(t, &s.rest),
             &Drift::new(t, &s.rest),
+            &SmoothChange::new(t, &s.rest),
             &LocalShape::new(t, &s.rest),
         ];
         for (row, term) in terms.into_iter().enumerate() {

@@ -3,7 +3,7 @@
 use neural_drape::{DrapeConfig, Stage, Weights};
 
 /// Every weight in the order of its declaration, named.
-fn by_name(w: &Weights) -> [(&'static str, f64); 12] {
+fn by_name(w: &Weights) -> [(&'static str, f64); 13] {
     [
         ("chamfer", w.chamfer),
         ("worst_distance", w.worst_distance),
@@ -17,10 +17,11 @@ fn by_name(w: &Weights) -> [(&'static str, f64); 12] {
         ("conformal", w.conformal),
         ("local_shape", w.local_shape),
         ("drift", w.drift),
+        ("smooth_change", w.smooth_change),
     ]
 }
 
-fn assert_weights(found: &Weights, expected: [f64; 12]) {
+fn assert_weights(found: &Weights, expected: [f64; 13]) {
     for ((name, found), expected) in by_name(found).into_iter().zip(expected) {
         let scale = f64::max(1.0, expected.abs());
         assert!(
@@ -45,6 +46,7 @@ fn weights(base: f64) -> Weights {
         conformal: base + 9.0,
         local_shape: base + 10.0,
         drift: base + 11.0,
+        smooth_change: base + 12.0,
     }
 }
 
@@ -126,6 +128,7 @@ fn the_weights_of_the_paper_are_these() {
             0.0,
             0.0,
             0.0,
+            0.0,
         ];
         assert_weights(&stage.from, expected);
         assert_weights(&stage.to, expected);
@@ -146,7 +149,7 @@ fn the_weights_of_the_authors_program_are_these() {
         for (weights, flip) in [&stage.from, &stage.to].into_iter().zip(flips) {
             let landmark = 400.0 * landmark;
             let expected = [
-                20.0, 0.0, 0.2, landmark, lambda, lambda, 0.1, flip, 0.0, 0.0, 0.0, 0.0,
+                20.0, 0.0, 0.2, landmark, lambda, lambda, 0.1, flip, 0.0, 0.0, 0.0, 0.0, 0.0,
             ];
             assert_weights(weights, expected);
         }
@@ -158,20 +161,20 @@ fn the_weights_of_the_standard_preset_are_these() {
     let stages = DrapeConfig::standard().stages;
     assert_eq!(stages.len(), 2);
     let start = [
-        20.0, 2.0, 0.2, 4000.0, 1.0, 1.0, 0.3, 1.0, 5.0, 0.0, 0.0, 0.0,
+        20.0, 2.0, 0.2, 4000.0, 1.0, 1.0, 0.3, 1.0, 5.0, 0.0, 0.0, 0.0, 0.0,
     ];
     assert_weights(&stages[0].from, start);
     // The flip term fades.
     let lead = [
-        20.0, 2.0, 0.2, 4000.0, 1.0, 1.0, 0.3, 0.0, 5.0, 0.0, 0.0, 0.0,
+        20.0, 2.0, 0.2, 4000.0, 1.0, 1.0, 0.3, 0.0, 5.0, 0.0, 0.0, 0.0, 0.0,
     ];
     assert_weights(&stages[0].to, lead);
     let fit = [
-        20.0, 4.0, 0.2, 2000.0, 0.3, 0.3, 0.3, 0.0, 5.0, 0.0, 0.0, 6000.0,
+        20.0, 4.0, 0.2, 2000.0, 0.3, 0.3, 0.3, 0.0, 5.0, 0.0, 0.0, 6000.0, 0.0,
     ];
     assert_weights(&stages[1].from, fit);
     let end = [
-        20.0, 48.0, 0.2, 18_000.0, 0.3, 0.3, 0.5, 0.0, 10.0, 0.0, 0.0, 3000.0,
+        20.0, 48.0, 0.2, 18_000.0, 0.3, 0.3, 0.5, 0.0, 10.0, 0.0, 0.0, 3000.0, 0.0,
     ];
     assert_weights(&stages[1].to, end);
 }

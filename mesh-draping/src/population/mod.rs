@@ -1,11 +1,16 @@
 //! The shapes that a source took before, as what to expect of the next one.
 
-use mesh_core::{Aabb, Landmark, Point3, Positions, TargetSurface, Vector3, VertexId};
+mod completion;
+
+use mesh_core::{
+    Aabb, Landmark, Point3, Positions, SurfacePoint, TargetSurface, Vector3, VertexId,
+};
 use mesh_init::PointPair;
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
 use crate::initial::ENOUGH_TO_STAND;
 use crate::{Pair, Similarity};
+pub(crate) use completion::Completion;
 
 /// Variance of a mode, as a share of the largest, below which it is noise.
 const LEAST_VARIANCE: f64 = 1e-4;
@@ -37,6 +42,8 @@ struct Pull {
     modes: Vec<Vector3>,
     /// In the target's coordinates.
     to: Point3,
+    /// How much it counts, > 0.
+    weight: f64,
 }
 
 impl Population {
@@ -71,28 +78,39 @@ impl Population {
         })
     }
 
+    /// How many vertices each shape has.
+    pub fn n_vertices(&self) -> usize {
+        self.mean.len()
+    }
+
     /// How many modes there are.
     pub fn n_modes(&self) -> usize {
         self.modes.len()
     }
 
     /// The shape of the population that fits a pair best, in the target's coordinates: where a drape may start
-    /// ([`Transfer::with_start`](crate::Transfer::with_start)).
+    /// ([`Transfer::with_prior`](crate::Transfer::with_prior)).
     ///
-    /// `min Σ |T q_j − x_j(c)|² / σ² + |c|²` over the coefficients c and the similarity T from the target to the population, with
-    /// σ a fiftieth of the longest side: first over landmarks q_j, then also over the closest points of vertices. With fewer
-    /// than three landmarks the target is taken to stand as the shapes do.
+    /// `min Σ w_j |T q_j − x_j(c)|² / σ² + |c|²` over the coefficients c and the similarity T from the target to the population,
+    /// with σ a fiftieth of the longest side: first over landmarks q_j, weighted as they are, then also over the closest points
+    /// of vertices, w by how far that is beside the others; none on an open boundary. With fewer than three landmarks the target is taken to stand as the shapes do.
     ///
     /// # Panics
     /// If the source has another number of vertices than the shapes.
     pub fn fit(&self, pair: &Pair) -> Positions {
+        self.fit_near(pair, &self.mean)
+    }
+
+    /// As [`Self::fit`]; with fewer than three landmarks the target is taken to stand as `near` does, a shape of the source in
+    /// its coordinates.
+    ///
+    /// # Panics
+    /// As [`Self::fit`].
+    pub fn fit_near(&self, pair: &Pair, near: &Positions) -> Positions {
         assert_eq!(pair.source.rest().len(), self.mean.len(), "one source");
         let followed = pair.landmarks.iter().filter(|l| l.is_followed());
         let marks: Vec<Pull> = followed.map(|l| self.pull_to(l)).collect();
-        let mut fitted = Fitted {
-            coefficients: DVector::zeros(self.modes.len()),
-            similarity: overlay(&self.mean, &self.mean),
-        };
+        let mut fitted = Fitted::new(self, overlay(&self.mean, near));
         if marks.len() >= ENOUGH_TO_STAND {
             for _ in 0..ROUNDS[0] {
                 fitted.improve(&marks.iter().collect::<Vec<_>>(), self.side);
@@ -104,8 +122,7 @@ impl Population {
             let all: Vec<&Pull> = marks.iter().chain(&near).collect();
             fitted.improve(&all, self.side);
         }
-        self.shape(&fitted.coefficients)
-            .map(|p| fitted.similarity.apply(p))
+        fitted.placed(self)
     }
 
     fn shape(&self, coefficients: &DVector<f64>) -> Positions {
@@ -128,10 +145,12 @@ impl Population {
             mean: place.position(&self.mean),
             modes: self.modes.iter().map(moved).collect(),
             to: landmark.target,
+            weight: landmark.weight,
         }
     }
 
-    /// Vertices spread over the source, each with the closest point of the target.
+    /// Vertices spread over the source, each with the closest point of the target: none where that lies on its open boundary,
+    /// and the less the farther it is beside the others, `(1 + d² / d̄²)⁻²` with their median d̄.
     fn pulls_to_closest(&self, fitted: &Fitted, target: &dyn TargetSurface) -> Vec<Pull> {
         let shape = self.shape(&fitted.coefficients);
         let every = self.mean.len().div_ceil(N_LOOKED_AT);
@@ -139,12 +158,27 @@ impl Population {
         let rows: Vec<VertexId> = rows.collect();
         let placed = rows.iter().map(|&v| fitted.similarity.apply(&shape[v]));
         let hits = target.closest_points(&placed.collect::<Vec<_>>());
-        let pulls = rows.iter().zip(hits).map(|(&v, hit)| Pull {
-            mean: self.mean[v],
-            modes: self.modes.iter().map(|mode| mode[v.index()]).collect(),
+        let within: Vec<(VertexId, SurfacePoint)> = (rows.into_iter().zip(hits))
+            .filter(|(_, hit)| !target.is_on_boundary(&hit.location))
+            .collect();
+        let scale = middle(within.iter().map(|(_, hit)| hit.distance_squared).collect());
+        let scale = scale.max((MISS * target.bounds().longest_side()).powi(2));
+        let pulls = within.iter().map(|(v, hit)| Pull {
             to: hit.point,
+            weight: (1.0 + hit.distance_squared / scale).powi(-2),
+            ..self.pull_of(*v)
         });
         pulls.collect()
+    }
+
+    /// A pull on a vertex, to where it is on the mean.
+    fn pull_of(&self, v: VertexId) -> Pull {
+        Pull {
+            mean: self.mean[v],
+            modes: self.modes.iter().map(|mode| mode[v.index()]).collect(),
+            to: self.mean[v],
+            weight: 1.0,
+        }
     }
 }
 
@@ -156,6 +190,20 @@ struct Fitted {
 }
 
 impl Fitted {
+    /// The mean, where a map puts it.
+    fn new(population: &Population, similarity: Similarity) -> Self {
+        Self {
+            coefficients: DVector::zeros(population.modes.len()),
+            similarity,
+        }
+    }
+
+    /// The shape in the target's coordinates.
+    fn placed(&self, population: &Population) -> Positions {
+        let shape = population.shape(&self.coefficients);
+        shape.map(|p| self.similarity.apply(p))
+    }
+
     /// One round: the similarity for these coefficients, then the coefficients for this similarity.
     fn improve(&mut self, pulls: &[&Pull], side: f64) {
         let place = |pull: &Pull, c: &DVector<f64>| {
@@ -163,11 +211,18 @@ impl Fitted {
             pull.mean + moved.sum::<Vector3>()
         };
         let pairs = |c: &DVector<f64>| -> Vec<PointPair> {
-            let pair = |pull: &&Pull| PointPair::new(place(pull, c), pull.to);
+            let pair = |pull: &&Pull| PointPair {
+                weight: pull.weight,
+                ..PointPair::new(place(pull, c), pull.to)
+            };
             pulls.iter().map(pair).collect()
         };
         let pairs_now = pairs(&self.coefficients).into_iter();
-        let back = pairs_now.map(|p| PointPair::new(p.target, p.source));
+        let back = pairs_now.map(|p| PointPair {
+            source: p.target,
+            target: p.source,
+            ..p
+        });
         let back = Similarity::fit(&back.collect::<Vec<_>>());
 
         let n = self.coefficients.len();
@@ -176,9 +231,9 @@ impl Fitted {
         for pull in pulls {
             let miss = back.apply(&pull.to) - pull.mean;
             for (i, a) in pull.modes.iter().enumerate() {
-                right[i] += a.dot(&miss);
+                right[i] += pull.weight * a.dot(&miss);
                 for (j, b) in pull.modes.iter().enumerate() {
-                    normal[(i, j)] += a.dot(b);
+                    normal[(i, j)] += pull.weight * a.dot(b);
                 }
             }
         }
@@ -187,6 +242,12 @@ impl Fitted {
         }
         self.similarity = Similarity::fit(&pairs(&self.coefficients));
     }
+}
+
+/// The value in the middle; 0 of none.
+fn middle(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied().unwrap_or(0.0)
 }
 
 /// The similarity that best lays a shape over another.
@@ -229,7 +290,7 @@ mod tests {
     use mesh_core::{shapes, PolygonSoup};
 
     /// A ball drawn out along two axes.
-    fn egg(y: f64, z: f64) -> PolygonSoup {
+    pub(super) fn egg(y: f64, z: f64) -> PolygonSoup {
         let mut soup = shapes::quad_sphere(6);
         for p in &mut soup.positions {
             *p = Point3::new(p.x, y * p.y, z * p.z);
@@ -237,13 +298,13 @@ mod tests {
         soup
     }
 
-    fn population() -> Population {
+    pub(super) fn population() -> Population {
         let eggs = [(1.0, 1.0), (1.4, 1.0), (1.0, 1.3), (1.4, 1.3), (1.2, 0.8)];
         let shapes = eggs.map(|(y, z)| Positions::from(egg(y, z).positions));
         Population::of(&shapes).expect("five shapes")
     }
 
-    fn pair(y: f64, z: f64) -> Pair {
+    pub(super) fn pair(y: f64, z: f64) -> Pair {
         Pair {
             source: Source::of_soup(shapes::quad_sphere(6), Seams::EXACT).expect("a mesh"),
             target: Target::of_soup(egg(y, z)).expect("a target"),
@@ -289,6 +350,46 @@ mod tests {
         let misses = fitted.iter().zip(&moved.positions);
         let worst = misses.map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
         assert!(worst < 0.06, "{worst}");
+    }
+
+    /// The closest points of what the scan does not show lie all on its edge.
+    #[test]
+    fn a_scan_of_one_side_does_not_draw_the_other_to_its_edge() {
+        let mut pair = pair(1.25, 1.1);
+        let right = pair.target.soup().positions.clone();
+        let mut scan = egg(1.25, 1.1);
+        let is_seen = |row: &u32| scan.positions[*row as usize].x > -0.1;
+        let faces = scan.faces.iter().filter(|face| face.iter().all(is_seen));
+        scan.faces = faces.cloned().collect();
+        let rest = pair.source.rest();
+        let front = rest.ids().filter(|&v| rest[v].x > 0.3).step_by(5);
+        pair.landmarks = front.map(|v| Landmark::new(v, right[v.index()])).collect();
+        pair.target = Target::of_soup(scan).unwrap();
+        let fitted = population().fit(&pair);
+        let misses = fitted.iter().zip(&right).map(|(a, b)| (a - b).norm());
+        let worst = misses.fold(0.0, f64::max);
+        assert!(worst < 0.06, "{worst}");
+    }
+
+    /// Two landmarks of half the weight count as one.
+    #[test]
+    fn landmarks_count_by_their_weight() {
+        let mut pair = pair(1.25, 1.1);
+        let at = |row: usize| pair.target.soup().positions[row] * 1.1;
+        let rows = (0..pair.target.soup().positions.len()).step_by(30);
+        pair.landmarks = rows
+            .map(|row| Landmark::new(VertexId::new(row), at(row)))
+            .collect();
+        let once = population().fit(&pair);
+        let halves = pair.landmarks.iter().map(|l| Landmark {
+            weight: 0.5,
+            ..l.clone()
+        });
+        pair.landmarks = halves.clone().chain(halves).collect();
+        let twice = population().fit(&pair);
+        for (a, b) in once.iter().zip(&twice) {
+            assert!((a - b).norm() < 1e-9);
+        }
     }
 
     #[test]
