@@ -10,8 +10,7 @@ use mesh_core::{
 use mesh_loss::{
     AreaKl, Chamfer, Conformal, Contact, ContactPair, CornerAngle, Drift, Flip, FoldBarrier,
     LandmarkDistance, LocalShape, Loss, Matches, NormalAgreement, SamplingConfig, SmoothChange,
-    SurfaceMatcher,
-    TriangleQuality, WorstDistance,
+    SurfaceMatcher, TriangleQuality, WorstDistance,
 };
 use proptest::prelude::*;
 

@@ -25,18 +25,18 @@ pub(super) struct Cut {
     edges: Vec<TriangulationEdge>,
 }
 
-/// What is broken: rows of the edges of each cut, and of the triangles of the first; each ascending.
+/// What is broken: rows of the edges and of the triangles of each cut, each ascending.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Broken {
     folds: Vec<Vec<u32>>,
-    skinny: Vec<u32>,
+    skinny: Vec<Vec<u32>>,
 }
 
 impl Broken {
     /// Whether nothing is broken that is not in `other`.
     pub(super) fn is_within(&self, other: &Self) -> bool {
-        let rows = self.folds.iter().chain([&self.skinny]);
-        let others = other.folds.iter().chain([&other.skinny]);
+        let rows = self.folds.iter().chain(&self.skinny);
+        let others = other.folds.iter().chain(&other.skinny);
         let is_in = |(rows, others): (&Vec<u32>, &Vec<u32>)| {
             rows.iter().all(|row| others.binary_search(row).is_ok())
         };
@@ -69,10 +69,10 @@ impl<'a> Judge<'a> {
 
     /// What is broken at `x`.
     pub(crate) fn broken(&self, x: &Positions) -> Broken {
-        let triangles = 0..self.cuts[0].triangulation.len() as u32;
+        let skinny = |cut: &Cut| self.skinny(cut, x, 0..cut.triangulation.len() as u32);
         Broken {
             folds: self.cuts.iter().map(|cut| cut.folds(x)).collect(),
-            skinny: self.skinny(x, triangles),
+            skinny: self.cuts.iter().map(skinny).collect(),
         }
     }
 
@@ -83,10 +83,14 @@ impl<'a> Judge<'a> {
             let is_folded = |&row: &u32| cut.is_folded_at(row, x);
             merged(before, reach, reach.iter().copied().filter(is_folded))
         });
-        let skinny = self.skinny(x, reach.0.skinny.iter().copied());
+        let skinny = self.cuts.iter().zip(&before.skinny).zip(&reach.0.skinny);
+        let skinny = skinny.map(|((cut, before), reach)| {
+            let now = self.skinny(cut, x, reach.iter().copied());
+            merged(before, reach, now.into_iter())
+        });
         Broken {
             folds: folds.collect(),
-            skinny: merged(&before.skinny, &reach.0.skinny, skinny.into_iter()),
+            skinny: skinny.collect(),
         }
     }
 
@@ -99,7 +103,7 @@ impl<'a> Judge<'a> {
         folds.dedup();
         Defects {
             folds,
-            skinny: broken.skinny.iter().map(|&t| t as usize).collect(),
+            skinny: broken.skinny[0].iter().map(|&t| t as usize).collect(),
             crossings: Vec::new(),
         }
     }
@@ -110,8 +114,14 @@ impl<'a> Judge<'a> {
             let triangles = rows.iter().flat_map(|&row| cut.edge(row).triangles);
             triangles.flat_map(|t| cut.triangulation.triangles()[t])
         });
-        let triangles = self.cuts[0].triangulation.triangles();
-        let skinny = broken.skinny.iter().flat_map(|&t| triangles[t as usize]);
+        let skinny = self
+            .cuts
+            .iter()
+            .zip(&broken.skinny)
+            .flat_map(|(cut, rows)| {
+                let triangles = cut.triangulation.triangles();
+                rows.iter().flat_map(|&t| triangles[t as usize])
+            });
         let mut vertices: Vec<VertexId> = folded.chain(skinny).collect();
         vertices.sort_unstable();
         vertices.dedup();
@@ -124,9 +134,9 @@ impl<'a> Judge<'a> {
         self.cuts.iter().map(barrier).collect()
     }
 
-    /// Of `rows`, the triangles that are skinny at `x` and were not at rest.
-    fn skinny(&self, x: &Positions, rows: impl Iterator<Item = u32>) -> Vec<u32> {
-        let triangles = self.cuts[0].triangulation.triangles();
+    /// Of `rows`, the triangles of a cut that are skinny at `x` and were not at rest.
+    fn skinny(&self, cut: &Cut, x: &Positions, rows: impl Iterator<Item = u32>) -> Vec<u32> {
+        let triangles = cut.triangulation.triangles();
         let is_skinny = |t: u32, x: &Positions| {
             triangle_quality(triangles[t as usize].map(|v| x[v])) < SKINNY_QUALITY
         };
@@ -194,17 +204,14 @@ impl<'a> Surroundings<'a> {
             let edges = in_order(triangles.iter().flat_map(|&t| &edges_at[t as usize]));
             (triangles, edges)
         };
-        let mut triangles = None;
-        let folds = self.judge.cuts.iter().zip(&self.edges_at).map(|cut| {
-            let (of_cut, edges) = of_cut(cut);
-            triangles.get_or_insert(of_cut);
-            edges
-        });
-        let folds = folds.collect();
-        Reach(Broken {
-            folds,
-            skinny: triangles.unwrap_or_default(),
-        })
+        let (skinny, folds) = self
+            .judge
+            .cuts
+            .iter()
+            .zip(&self.edges_at)
+            .map(of_cut)
+            .unzip();
+        Reach(Broken { folds, skinny })
     }
 
     /// The least cosine at an edge of the patch that was not folded at rest.
