@@ -82,7 +82,7 @@ pub use input::DrapeInput;
 pub use objective::TermReport;
 pub use parametrization::Parametrization;
 pub use regions::Regions;
-pub use repair::{repair, Crossings, Defects, Repair};
+pub use repair::{repair, Crossings, Defects, Fit, Repair};
 pub use schedule::{LearningRate, Stage, Weights};
 pub use state::{DrapeState, StateReader, StateWriter};
 pub use studies::Study;

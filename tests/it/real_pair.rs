@@ -42,11 +42,13 @@ fn a_horse_becomes_a_wolf_and_keeps_its_file() {
         "{json:#}"
     );
     assert_eq!(json["figures"]["folds"], 0.0);
-    assert_eq!(
-        json["warnings"].as_array().map(Vec::len),
-        Some(0),
-        "{json:#}"
-    );
+    // Nothing is wrong but where so short a run leaves the surface running through itself, which the figures count.
+    let warnings = json["warnings"].as_array().expect("a list");
+    let is_of_crossing =
+        |warning: &serde_json::Value| warning.to_string().contains("run through each other");
+    assert!(warnings.iter().all(is_of_crossing), "{json:#}");
+    let crossings = json["figures"]["crossings"].as_f64();
+    assert_eq!(crossings == Some(0.0), warnings.is_empty(), "{json:#}");
 
     let text = |path: &str| std::fs::read_to_string(path).expect("a file");
     let kept = |text: String| -> Vec<String> {

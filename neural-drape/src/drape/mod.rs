@@ -19,7 +19,7 @@ use crate::network::{NetworkMap, Shapes};
 use crate::objective::{self, DistanceLoss, StructuralLoss, TermReport};
 use crate::regions::{Follow, Guidance, Regions};
 use crate::schedule::Weights;
-use crate::{Crossings, DrapeError, DrapeInput, Parametrization, Repair};
+use crate::{Crossings, DrapeError, DrapeInput, Fit, Parametrization, Repair};
 
 /// So many times in a run, parts that nothing attracts follow the rest.
 const N_FOLLOWS: usize = 5;
@@ -293,7 +293,10 @@ impl Drape {
         let crossings = if is_placed {
             Crossings::Stay
         } else {
-            Crossings::Part(Some(self.matcher.target().as_ref()))
+            Crossings::Part(Some(Fit {
+                target: self.matcher.target().as_ref(),
+                attraction: self.attraction(),
+            }))
         };
         crate::repair(&self.triangulation, &self.rest, positions, held, crossings)
     }

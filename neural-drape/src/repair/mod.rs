@@ -46,12 +46,22 @@ pub struct Repair {
     pub left: Defects,
 }
 
+/// What a surface is fitted to.
+#[derive(Clone, Copy)]
+pub struct Fit<'t> {
+    /// The target, in the coordinates of the surface.
+    pub target: &'t dyn TargetSurface,
+    /// How strongly each vertex is attracted by it: where one is not, its distance does not count.
+    pub attraction: &'t VertexData<f64>,
+}
+
 /// What becomes of crossings.
 #[derive(Clone, Copy)]
 pub enum Crossings<'t> {
-    /// They are taken out. Where a target is given, in the same coordinates, no patch comes farther from it to be free than
-    /// the farthest vertex of the whole surface, or than a hundredth of its longest side: such crossings are left.
-    Part(Option<&'t dyn TargetSurface>),
+    /// They are taken out. Where a fit is given, no patch comes farther from the target to be free than the farthest vertex
+    /// of the whole surface, but a hundredth of its longest side or three times the distance of the median vertex at most:
+    /// such crossings are left.
+    Part(Option<Fit<'t>>),
     /// They stay.
     Stay,
 }
@@ -115,7 +125,7 @@ pub fn repair(
         left,
     };
     let shape = match crossings {
-        Crossings::Part(target) => untangle::untangle(&judge, shape, &held, target),
+        Crossings::Part(fit) => untangle::untangle(&judge, shape, &held, fit),
         Crossings::Stay => shape,
     };
     Repair {

@@ -4,9 +4,11 @@ use mesh_core::{Aabb, Point3, Positions, VertexId};
 
 use super::contour::shorten;
 use super::crossing::{triangles_at, Detector};
-use super::{far, is_at, n_pairs, Untangled, Untangler, HOPELESS, MAX_MOTION};
+use super::{is_at, n_pairs, Untangled, Untangler, HOPELESS};
 use crate::repair::{flatten, grown, Broken, Reach};
 
+/// A patch leaves the box around it and its start by no more than this share of the longest side.
+const MARGIN: f64 = 0.06;
 /// So often what crosses is pulled apart and the patch relaxed, ...
 const TURNS: usize = 60;
 /// ... but no more once so many turns brought nothing.
@@ -49,6 +51,10 @@ pub(super) struct Case<'a, 'u> {
     all: &'u Untangler<'a>,
     /// Where everything was.
     x: &'u Positions,
+    /// From where the patch is pulled apart.
+    start: Positions,
+    /// What is seen of all that the patch may meet; it stays within.
+    bounds: Aabb,
     broken: &'u Broken,
     /// What may move, ascending.
     free: Vec<VertexId>,
@@ -67,18 +73,23 @@ pub(super) struct Case<'a, 'u> {
 }
 
 impl<'a, 'u> Case<'a, 'u> {
+    /// A patch with so many rings around it; none where nothing can carry it.
     pub(super) fn new(
         all: &'u Untangler<'a>,
         shape: &'u Untangled,
         patch: &[VertexId],
-        rings: usize,
-    ) -> Self {
+        (rings, start): (usize, Start),
+    ) -> Option<Self> {
         let (x, triangulation) = (&shape.positions, all.ground.triangulation);
         let mut free = grown(triangulation, patch, rings);
         free.retain(|v| all.held.binary_search(v).is_err());
-        let bounds = around(&free, x, MAX_MOTION * all.size);
+        let mut y = x.clone();
+        if matches!(start, Start::Carried) && !all.carrier.carry(&mut y, &free) {
+            return None;
+        }
+        let bounds = around(&free, [x, &y], MARGIN * all.size);
         let others = shape.left.iter().copied();
-        Self {
+        Some(Self {
             rows: triangles_at(triangulation, &free),
             detector: all.detector.within(all.ground, &bounds, x),
             near: all.surroundings.reach(&free),
@@ -88,38 +99,42 @@ impl<'a, 'u> Case<'a, 'u> {
             is_broken: all.judge.vertices(&shape.broken),
             n_pairs: n_pairs(triangulation, patch, &shape.left),
             broken: &shape.broken,
+            start: y,
             all,
             x,
+            bounds,
             free,
             work: 0,
-        }
+        })
     }
 
-    /// What the patch comes to from a start, near enough to the target and better than `best`; none where it does not.
-    pub(super) fn candidate(
-        &mut self,
-        start: Start,
-        best: Option<&Candidate>,
-    ) -> Option<Candidate> {
+    /// What the patch comes to, near enough to the target and better than `best`; none where it does not.
+    pub(super) fn candidate(&mut self, best: Option<&Candidate>) -> Option<Candidate> {
         let (all, x) = (self.all, self.x);
-        let (mut y, left) = self.pulled_apart(start)?;
+        let (mut y, left) = self.pulled_apart()?;
         if best.is_some_and(|best| best.left.len() < left.len()) {
             return None;
         }
         let is_hopeless =
             |case: &Self, y| all.excess(&case.rows, &case.free, [x, y]) > HOPELESS * all.limit;
-        if far(&self.free, [x, &y]) > MAX_MOTION * all.size || is_hopeless(self, &y) {
+        if !self.is_within_bounds(&y) || is_hopeless(self, &y) {
             return None;
         }
         self.give_back(&mut y, &left);
         let excess = all.excess(&self.rows, &self.free, [x, &y]);
-        let is_near = far(&self.free, [x, &y]) <= MAX_MOTION * all.size && excess <= all.limit;
         let is_better = |best: &Candidate| (left.len(), excess) < (best.left.len(), best.excess);
+        let is_near = excess <= all.limit && self.is_within_bounds(&y);
         (is_near && best.is_none_or(is_better)).then_some(Candidate {
             positions: y,
             left,
             excess,
         })
+    }
+
+    fn is_within_bounds(&self, y: &Positions) -> bool {
+        let Aabb { min, max } = self.bounds;
+        let is_in = |v: &VertexId| (0..3).all(|k| (min[k]..=max[k]).contains(&y[*v][k]));
+        self.free.iter().all(is_in)
     }
 
     /// What crosses at `y` and is no matter of another patch.
@@ -141,12 +156,9 @@ impl<'a, 'u> Case<'a, 'u> {
 
     /// The shape, of those that the patch goes through, in which least of it crosses and nothing is newly folded, with the
     /// pairs that cross there; none where that is not less than half of what crossed.
-    fn pulled_apart(&mut self, start: Start) -> Option<(Positions, Vec<[u32; 2]>)> {
+    fn pulled_apart(&mut self) -> Option<(Positions, Vec<[u32; 2]>)> {
         let all = self.all;
-        let mut y = self.x.clone();
-        if matches!(start, Start::Carried) && !all.carrier.carry(&mut y, &self.free) {
-            return None;
-        }
+        let mut y = self.start.clone();
         let mut best = None;
         let (mut n_left, mut least, mut n_in_vain) = (self.n_pairs / 2 + 1, usize::MAX, 0);
         for turn in 1..=TURNS {
@@ -193,7 +205,7 @@ impl<'a, 'u> Case<'a, 'u> {
         for turn in 0..RETURNS {
             let mut moved = y.clone();
             for (&v, share) in self.free.iter().zip(&shares) {
-                let stuck = (turn >= RETURNS / 2).then(|| self.place_of_stuck(&y[v]));
+                let stuck = (turn >= RETURNS / 2).then(|| self.place_of_stuck(v, &y[v]));
                 let goal = stuck.flatten().unwrap_or(self.x[v]);
                 moved[v] = y[v] + (goal - y[v]) * *share;
             }
@@ -210,9 +222,10 @@ impl<'a, 'u> Case<'a, 'u> {
         }
     }
 
-    /// Where on the target a point belongs that is far from it.
-    fn place_of_stuck(&self, point: &Point3) -> Option<Point3> {
-        let hit = self.all.target?.closest_point(point);
+    /// Where on the target a vertex at `point` belongs that is attracted and far from it.
+    fn place_of_stuck(&self, v: VertexId, point: &Point3) -> Option<Point3> {
+        let fit = self.all.fit.filter(|fit| fit.attraction[v] > 0.0)?;
+        let hit = fit.target.closest_point(point);
         let is_far = hit.distance_squared.sqrt() > STUCK * self.all.size;
         is_far.then_some(hit.point)
     }
@@ -244,10 +257,10 @@ impl<'a, 'u> Case<'a, 'u> {
     }
 }
 
-/// The box around some vertices, larger by `margin` on every side.
-fn around(vertices: &[VertexId], x: &Positions, margin: f64) -> Aabb {
-    let points: Vec<_> = vertices.iter().map(|&v| x[v]).collect();
-    let mut bounds = Aabb::of(&points);
+/// The box around some vertices in two shapes, larger by `margin` on every side.
+fn around(vertices: &[VertexId], shapes: [&Positions; 2], margin: f64) -> Aabb {
+    let points = shapes.map(|x| vertices.iter().map(|&v| x[v]));
+    let mut bounds = Aabb::of(&points.into_iter().flatten().collect::<Vec<_>>());
     bounds.min.iter_mut().for_each(|c| *c -= margin);
     bounds.max.iter_mut().for_each(|c| *c += margin);
     bounds

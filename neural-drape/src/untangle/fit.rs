@@ -1,31 +1,41 @@
 //! How far from the target a patch comes.
 
-use mesh_core::{Point3, Positions, TargetSurface, TriangleBvh, VertexId};
+use mesh_core::{Point3, Positions, TriangleBvh, VertexId};
 
 use super::crossing::Ground;
+use crate::repair::Fit;
 
-/// The largest distance of a vertex from the target.
-pub(super) fn farthest(target: &dyn TargetSurface, x: &Positions) -> f64 {
-    let hits = target.closest_points(x.as_slice());
-    let farthest = hits.iter().map(|hit| hit.distance_squared);
-    farthest.fold(0.0, f64::max).sqrt()
+/// How far the median and the farthest of the attracted vertices are from the target.
+pub(super) fn distances(fit: Fit<'_>, x: &Positions) -> [f64; 2] {
+    let attracted = x.ids().filter(|&v| fit.attraction[v] > 0.0);
+    let places: Vec<Point3> = attracted.map(|v| x[v]).collect();
+    let hits = fit.target.closest_points(&places);
+    let mut squares: Vec<f64> = hits.iter().map(|hit| hit.distance_squared).collect();
+    squares.sort_by(f64::total_cmp);
+    let at = |rank: usize| squares.get(rank).map_or(0.0, |square| square.sqrt());
+    [at(squares.len() / 2), at(squares.len().saturating_sub(1))]
 }
 
-/// How far the triangles `rows` and the target are from each other at `y`, at most, where they were nearer at `x`: corners
-/// and middles from the target, and what of the target was next to them from the triangles. Zero where nothing is farther
-/// than it was.
+/// How far the attracted ones of the triangles `rows` and the target are from each other at `y`, at most, where they were
+/// nearer at `x`: corners and middles from the target, and what of the target was next to them from the triangles. Zero where
+/// nothing is farther than it was.
 pub(super) fn excess(
-    target: &dyn TargetSurface,
+    fit: Fit<'_>,
     ground: Ground<'_>,
     rows: &[u32],
     [x, y]: [&Positions; 2],
 ) -> f64 {
+    let is_attracted = |row: &&u32| {
+        let corners = &ground.triangulation.triangles()[**row as usize];
+        corners.iter().all(|&v| fit.attraction[v] > 0.0)
+    };
     let surface = TriangleBvh::new(corners(ground, rows, y));
-    let places = places(ground, rows, x).zip(places(ground, rows, y));
+    let rows: Vec<u32> = rows.iter().filter(is_attracted).copied().collect();
+    let places = places(ground, &rows, x).zip(places(ground, &rows, y));
     let mut excess = 0.0f64;
     for (old, new) in places.filter(|(old, new)| old != new) {
-        let was = target.closest_point(&old);
-        let there = target.closest_point(&new).distance_squared;
+        let was = fit.target.closest_point(&old);
+        let there = fit.target.closest_point(&new).distance_squared;
         let back = surface.closest_point(&was.point);
         let back = back.map_or(0.0, |hit| hit.distance_squared);
         let is_farther = |d: &f64| *d > was.distance_squared;

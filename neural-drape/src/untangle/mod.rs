@@ -6,10 +6,10 @@ mod contour;
 mod crossing;
 mod fit;
 
-use mesh_core::{Positions, TargetSurface, Triangulation, UnionFind, UnitFrame, VertexId};
+use mesh_core::{Positions, Triangulation, UnionFind, UnitFrame, VertexId};
 use mesh_loss::LocalShape;
 
-use crate::repair::{grown, Broken, Judge, Surroundings};
+use crate::repair::{grown, Broken, Fit, Judge, Surroundings};
 use carry::Carrier;
 use case::{Candidate, Case, Start};
 use crossing::{Detector, Ground};
@@ -30,13 +30,16 @@ const WIDE: &[(usize, Start)] = &[
     (4, Start::AsItIs),
     (4, Start::Carried),
 ];
-/// No vertex moves farther than this share of the longest side.
+/// Without a target, no vertex moves farther than this share of the longest side.
 const MAX_MOTION: f64 = 0.06;
 /// A freed patch this near to the target is taken at once, in longest sides.
 const GOOD: f64 = 0.006;
 /// A patch may come as far from the target as the farthest vertex of the whole surface, within these bounds: then the
-/// Hausdorff distance stays what it was, or small.
+/// Hausdorff distance stays what it was, or small. ...
 const LIMITS: [f64; 2] = [0.0075, 0.01];
+/// ... It may always come this many times as far as the median vertex is: all surfaces are far from the points of a sparse
+/// cloud.
+const TIMES_MEDIAN: f64 = 3.0;
 /// A patch much farther from the target than it may be is not brought back.
 const HOPELESS: f64 = 3.0;
 /// So often, all in all, as many vertices are moved as the surface has; then what still crosses is left.
@@ -75,12 +78,12 @@ pub(crate) fn untangle(
     judge: &Judge<'_>,
     mut shape: Untangled,
     held: &[VertexId],
-    target: Option<&dyn TargetSurface>,
+    fit: Option<Fit<'_>>,
 ) -> Untangled {
     if shape.left.is_empty() {
         return shape;
     }
-    let mut untangler = Untangler::new(judge, &shape.positions, held, target);
+    let mut untangler = Untangler::new(judge, &shape.positions, held, fit);
     for (apart, tries) in PASSES {
         for patch in patches(judge.triangulation(), &shape.left, apart) {
             if untangler.is_spent() {
@@ -143,7 +146,7 @@ fn is_at(triangulation: &Triangulation, patch: &[VertexId], pair: &[u32; 2]) -> 
 struct Untangler<'a> {
     ground: Ground<'a>,
     held: &'a [VertexId],
-    target: Option<&'a dyn TargetSurface>,
+    fit: Option<Fit<'a>>,
     /// Of all triangles.
     detector: Detector,
     shape: LocalShape,
@@ -163,21 +166,22 @@ impl<'a> Untangler<'a> {
         judge: &'a Judge<'a>,
         x: &Positions,
         held: &'a [VertexId],
-        target: Option<&'a dyn TargetSurface>,
+        fit: Option<Fit<'a>>,
     ) -> Self {
         let ground = Ground {
             triangulation: judge.triangulation(),
             rest: judge.rest(),
         };
         let size = UnitFrame::principal(x.as_slice()).scale;
-        let limit = target.map_or(MAX_MOTION * size, |target| {
+        let limit = fit.map_or(MAX_MOTION * size, |fit| {
             let [least, most] = LIMITS.map(|limit| limit * size);
-            fit::farthest(target, x).clamp(least, most)
+            let [median, farthest] = fit::distances(fit, x);
+            farthest.clamp(least, most).max(TIMES_MEDIAN * median)
         });
         Self {
             ground,
             held,
-            target,
+            fit,
             detector: Detector::new(ground, x),
             shape: LocalShape::new(ground.triangulation, ground.rest),
             carrier: Carrier::new(ground.triangulation, ground.rest),
@@ -210,9 +214,11 @@ impl<'a> Untangler<'a> {
         tries: &[(usize, Start)],
     ) -> Option<Positions> {
         let mut best: Option<Candidate> = None;
-        for &(rings, start) in tries {
-            let mut case = Case::new(self, shape, patch, rings);
-            let candidate = case.candidate(start, best.as_ref());
+        for &how in tries {
+            let Some(mut case) = Case::new(self, shape, patch, how) else {
+                continue;
+            };
+            let candidate = case.candidate(best.as_ref());
             self.work += case.work;
             best = candidate.or(best);
             if best.as_ref().is_some_and(|best| self.is_good(best)) {
@@ -229,8 +235,8 @@ impl<'a> Untangler<'a> {
     /// How much farther from the target than before the triangles `rows` come from `x` to `y`; without a target the motion
     /// of the vertices `free` tells.
     fn excess(&self, rows: &[u32], free: &[VertexId], [x, y]: [&Positions; 2]) -> f64 {
-        match self.target {
-            Some(target) => fit::excess(target, self.ground, rows, [x, y]),
+        match self.fit {
+            Some(fit) => fit::excess(fit, self.ground, rows, [x, y]),
             None => far(free, [x, y]),
         }
     }
