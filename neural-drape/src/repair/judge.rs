@@ -35,12 +35,23 @@ pub(crate) struct Broken {
 impl Broken {
     /// Whether nothing is broken that is not in `other`.
     pub(super) fn is_within(&self, other: &Self) -> bool {
-        let rows = self.folds.iter().chain(&self.skinny);
-        let others = other.folds.iter().chain(&other.skinny);
-        let is_in = |(rows, others): (&Vec<u32>, &Vec<u32>)| {
-            rows.iter().all(|row| others.binary_search(row).is_ok())
+        let new = self.without(other);
+        new.folds.iter().chain(&new.skinny).all(Vec::is_empty)
+    }
+
+    /// What is broken and not in `other`.
+    pub(crate) fn without(&self, other: &Self) -> Self {
+        let rest = |rows: &[Vec<u32>], others: &[Vec<u32>]| {
+            let of_cut = |(rows, others): (&Vec<u32>, &Vec<u32>)| {
+                let is_new = |row: &&u32| others.binary_search(row).is_err();
+                rows.iter().filter(is_new).copied().collect()
+            };
+            rows.iter().zip(others).map(of_cut).collect()
         };
-        rows.zip(others).all(is_in)
+        Self {
+            folds: rest(&self.folds, &other.folds),
+            skinny: rest(&self.skinny, &other.skinny),
+        }
     }
 }
 

@@ -64,8 +64,6 @@ pub(super) struct Case<'a, 'u> {
     near: Reach,
     /// What crosses elsewhere.
     others: Vec<[u32; 2]>,
-    /// Vertices of what is folded or skinny already.
-    is_broken: Vec<VertexId>,
     /// How many pairs cross in the patch.
     n_pairs: usize,
     /// How many vertices were moved, each time counted.
@@ -96,7 +94,6 @@ impl<'a, 'u> Case<'a, 'u> {
             others: others
                 .filter(|pair| !is_at(triangulation, patch, pair))
                 .collect(),
-            is_broken: all.judge.vertices(&shape.broken),
             n_pairs: n_pairs(triangulation, patch, &shape.left),
             broken: &shape.broken,
             start: y,
@@ -149,9 +146,7 @@ impl<'a, 'u> Case<'a, 'u> {
     fn newly_broken(&self, y: &Positions) -> Vec<VertexId> {
         let judge = self.all.judge;
         let broken = judge.broken_after(self.broken, y, &self.near);
-        let mut vertices = judge.vertices(&broken);
-        vertices.retain(|v| self.is_broken.binary_search(v).is_err());
-        vertices
+        judge.vertices(&broken.without(self.broken))
     }
 
     /// The shape, of those that the patch goes through, in which least of it crosses and nothing is newly folded, with the
