@@ -115,11 +115,7 @@ pub(super) fn drape_files(args: &Args) -> anyhow::Result<Done<'_>> {
     pair.source = pair.source.with_morphs(args.morphs.morphs.into());
     let truth = read_shape(args.truth.as_deref(), &pair)?;
     let from = read_shape(args.from.as_deref(), &pair)?;
-    let prior = args.prior.as_ref().map(|folder| {
-        let read = || read_population(folder, &pair.source);
-        stages.time("prior", read)
-    });
-    let prior = prior.transpose()?;
+    let prior = read_prior(args, &pair, &mut stages)?;
     check_bakeable(&args.bake.maps(), &pair.source, &args.target)?;
     let mut warnings = words::about_inputs(&pair);
     if let Some(file) = pair.source.file() {
@@ -161,6 +157,12 @@ pub(super) fn drape_files(args: &Args) -> anyhow::Result<Done<'_>> {
     done.warnings.extend(baked);
     done.tell(&watch, &stages)?;
     Ok(done)
+}
+
+/// The shapes that the source took before, where a folder of them is given.
+fn read_prior(args: &Args, pair: &Pair, stages: &mut Stages) -> anyhow::Result<Option<Population>> {
+    let read = |folder| stages.time("prior", || read_population(folder, &pair.source));
+    args.prior.as_deref().map(read).transpose()
 }
 
 /// From a shape on, which changes as evenly as is asked for; or with the shapes that the source took before.
