@@ -1,7 +1,6 @@
 //! A patch as it was at rest, carried by what is around it.
 
 use mesh_core::{nearest_rotation, Positions, Triangulation, UnionFind, Vector3, VertexId};
-
 use mesh_operators::nalgebra_sparse::{CooMatrix, CsrMatrix};
 use mesh_operators::SpdSolver;
 use nalgebra::Matrix3;
