@@ -2,19 +2,22 @@
 
 mod counterpart;
 mod elastic;
+mod ends;
 mod graph;
 mod signature;
 mod ways;
 
-use mesh_core::{Landmark, Positions, TargetSurface, Triangulation, Vector3};
+use mesh_core::{Landmark, Point3, Positions, TargetSurface, Triangulation, Vector3};
 
 use crate::initialize::{check_landmarks, check_length};
 use crate::InitError;
 use counterpart::{PairCost, Shapes};
 use elastic::{Elastic, Goal};
+use ends::Ends;
 use graph::SampleGraph;
-use signature::Misfits;
+use signature::{Misfits, Ratios};
 pub use ways::LandmarkWays;
+use ways::Ways;
 
 /// Pull of a landmark; 1 is about as strong as the surface's own.
 const LANDMARK_WEIGHT: f64 = 30.0;
@@ -31,7 +34,7 @@ const N_FIRST_STEPS: usize = 30;
 pub struct GuideInput<'a> {
     /// The source's polygons as triangles.
     pub triangulation: &'a Triangulation,
-    /// The source's shape, in the target's coordinates: turned, moved and scaled, not sheared. It is kept.
+    /// The source's shape, in the target's coordinates: turned, moved and scaled, not sheared. It is kept, but for its size.
     pub rest: &'a Positions,
     /// Places that belong together, each with a weight above 0.
     pub landmarks: &'a [Landmark],
@@ -83,9 +86,9 @@ impl GuideConfig {
             space: [0.02, 2.0],
             signature: [1.0, 0.1],
             normal: 0.09,
-            detail: [0.15, 0.015],
-            frame_radius: 0.05,
-            bending_length: 0.02,
+            detail: [0.2, 0.02],
+            frame_radius: 0.065,
+            bending_length: 0.026,
             ..Self::stiff()
         }
     }
@@ -108,11 +111,18 @@ impl GuideConfig {
 /// landmark, as long as the surface keeps its shape; later, more and more, to the one that is near in space.
 ///
 /// Parts that turn far, and those without a landmark at their end, turn whole. The target may be a mesh, a soup or a cloud:
-/// distances along it are those of a graph over its samples. Pairs count by how well the way there and back agrees. Without
-/// a landmark only space and normals lead. The work grows with the number of vertices times that of samples: it is meant
-/// for a stand-in of a thousand ([`mesh_core::Proxy`]). What does not depend on the settings is found once.
+/// distances along it are those of a graph over its samples. The source is as large as makes ways between landmarks as long
+/// as along the target: where these are in space tells the size of a crouching body as little as that of a rope. Ends of
+/// parts without a landmark are landmarks where ways leave no doubt which of them belong together. Pairs count by how well
+/// the way there and back agrees. Without a landmark only space and normals lead. The work grows with the number of vertices
+/// times that of samples: it is meant for a stand-in of a thousand ([`mesh_core::Proxy`]). What does not depend on the
+/// settings is found once.
 pub struct Guide<'a> {
-    input: GuideInput<'a>,
+    triangulation: &'a Triangulation,
+    /// The source's shape, as large as the target.
+    rest: Positions,
+    /// Those of the input, and ends of parts that belong together.
+    landmarks: Vec<Landmark>,
     /// The longest side of the target.
     size: f64,
     graph: SampleGraph,
@@ -129,9 +139,31 @@ impl<'a> Guide<'a> {
         check_landmarks(input.triangulation.n_vertices(), input.landmarks)?;
         let size = input.target.bounds().longest_side();
         let graph = SampleGraph::new(input.target, N_SAMPLES);
+        let ways = Ways::new(&input, &graph);
+        let ratios = Ratios::new(&ways.between(input.landmarks, &graph), input.landmarks);
+        let rest = scaled(&input, ratios.on_the_whole());
+        let ways = ways.scaled(ratios.on_the_whole());
+        let ends = Ends {
+            triangulation: input.triangulation,
+            rest: &rest,
+            graph: &graph,
+            landmarks: input.landmarks,
+            ways: &ways,
+            size,
+        };
+        let ends = ends.pairs();
+        let more = GuideInput {
+            rest: &rest,
+            landmarks: &ends,
+            ..input
+        };
+        let ways = ways.and(Ways::new(&more, &graph));
+        let landmarks = [input.landmarks, &ends].concat();
         Ok(Self {
-            misfits: Misfits::new(&input, &graph, size),
-            input,
+            triangulation: input.triangulation,
+            misfits: Misfits::new(&ways, &landmarks, &graph, &rest, size),
+            landmarks,
+            rest,
             size,
             graph,
         })
@@ -142,22 +174,22 @@ impl<'a> Guide<'a> {
     /// # Errors
     /// The rest shape is so degenerate that its surface does not determine a deformation.
     pub fn start(&self, config: &GuideConfig) -> Result<Positions, InitError> {
-        let (input, size) = (&self.input, self.size);
-        let mut x = input.rest.clone();
+        let size = self.size;
+        let mut x = self.rest.clone();
         if size <= 0.0 {
             return Ok(x);
         }
-        let mut elastic = Elastic::new(input.triangulation, input.rest, size, config)?;
-        if !input.landmarks.is_empty() {
+        let mut elastic = Elastic::new(self.triangulation, &self.rest, size, config)?;
+        if !self.landmarks.is_empty() {
             let nothing = vec![None; x.len()];
-            let goals = goals(input, &elastic, &x, &nothing, size);
+            let goals = self.goals(&elastic, &x, &nothing, size);
             elastic.draw(&mut x, &goals, N_FIRST_STEPS)?;
         }
         for round in 0..config.n_rounds {
             let t = round as f64 / (config.n_rounds - 1).max(1) as f64;
             let shapes = Shapes {
-                triangulation: input.triangulation,
-                rest: input.rest,
+                triangulation: self.triangulation,
+                rest: &self.rest,
                 x: &x,
                 graph: &self.graph,
                 misfits: &self.misfits,
@@ -165,46 +197,55 @@ impl<'a> Guide<'a> {
             };
             let counterparts = shapes.counterparts(config.cost(t));
             let detail = GuideConfig::between(config.detail, t) * size;
-            let goals = goals(input, &elastic, &x, &counterparts, detail);
+            let goals = self.goals(&elastic, &x, &counterparts, detail);
             elastic.draw(&mut x, &goals, config.n_steps)?;
         }
         Ok(x)
     }
+
+    /// Landmarks and counterparts as goals; what has neither is held by next to nothing.
+    fn goals(
+        &self,
+        elastic: &Elastic,
+        x: &Positions,
+        counterparts: &[Option<(Point3, f64)>],
+        detail: f64,
+    ) -> Vec<Goal> {
+        let goal = |((p, counterpart), m): ((&Point3, &Option<_>), &f64)| {
+            let (point, confidence) = counterpart.unwrap_or((*p, 0.0));
+            Goal {
+                point,
+                weight: (confidence + TETHER) * m / detail.powi(2),
+            }
+        };
+        let places = x.iter().zip(counterparts).zip(elastic.mass());
+        let mut goals: Vec<Goal> = places.map(goal).collect();
+        // Those of curves first: where both are at one vertex, the landmark leads.
+        let is_cut = |l: &&Landmark| l.curve.is_some();
+        let (cut, marked) = (self.landmarks.iter().filter(is_cut), self.landmarks.iter());
+        for l in cut.chain(marked.filter(|l| !is_cut(l))) {
+            let vertex = l.source.main_vertex();
+            let offset = match l.curve {
+                Some(_) => x[vertex] - l.source.position(x),
+                None => Vector3::zeros(),
+            };
+            goals[vertex.index()] = Goal {
+                point: l.target + offset,
+                weight: LANDMARK_WEIGHT * l.pull(),
+            };
+        }
+        goals
+    }
 }
 
-/// Landmarks and counterparts as goals; what has neither is held by next to nothing.
-fn goals(
-    input: &GuideInput<'_>,
-    elastic: &Elastic,
-    x: &Positions,
-    counterparts: &[Option<(mesh_core::Point3, f64)>],
-    detail: f64,
-) -> Vec<Goal> {
-    let goal = |((p, counterpart), m): ((&mesh_core::Point3, &Option<_>), &f64)| {
-        let (point, confidence) = counterpart.unwrap_or((*p, 0.0));
-        Goal {
-            point,
-            weight: (confidence + TETHER) * m / detail.powi(2),
-        }
-    };
-    let places = x.iter().zip(counterparts).zip(elastic.mass());
-    let mut goals: Vec<Goal> = places.map(goal).collect();
-    // Those of curves first: where both are at one vertex, the landmark leads.
-    let is_cut = |l: &&Landmark| l.curve.is_some();
-    let (cut, marked) = (
-        input.landmarks.iter().filter(is_cut),
-        input.landmarks.iter(),
-    );
-    for l in cut.chain(marked.filter(|l| !is_cut(l))) {
-        let vertex = l.source.main_vertex();
-        let offset = match l.curve {
-            Some(_) => x[vertex] - l.source.position(x),
-            None => Vector3::zeros(),
-        };
-        goals[vertex.index()] = Goal {
-            point: l.target + offset,
-            weight: LANDMARK_WEIGHT * l.pull(),
-        };
-    }
-    goals
+/// The source's shape, `ratio` times as large about the middle of its landmarks.
+fn scaled(input: &GuideInput<'_>, ratio: f64) -> Positions {
+    let marks = input
+        .landmarks
+        .iter()
+        .map(|l| l.source.position(input.rest).coords);
+    let middle = marks.sum::<Vector3>() / input.landmarks.len().max(1) as f64;
+    input
+        .rest
+        .map(|p| Point3::from(middle + (p.coords - middle) * ratio))
 }

@@ -50,6 +50,21 @@ impl Ways {
         }
     }
 
+    /// The same on a source that is `ratio` times as large.
+    pub(super) fn scaled(mut self, ratio: f64) -> Self {
+        for distance in &mut self.on_source {
+            distance.iter_mut().for_each(|d| *d *= ratio);
+        }
+        self
+    }
+
+    /// These and those from more landmarks.
+    pub(super) fn and(mut self, more: Self) -> Self {
+        self.on_source.extend(more.on_source);
+        self.on_target.extend(more.on_target);
+        self
+    }
+
     /// Those from each of the landmarks to the others.
     pub(super) fn between(&self, landmarks: &[Landmark], graph: &SampleGraph) -> LandmarkWays {
         let samples = landmarks.iter().map(|l| graph.nearest(&l.target));
