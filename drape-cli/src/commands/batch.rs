@@ -144,7 +144,9 @@ fn listed(file: &Path) -> anyhow::Result<Vec<PathBuf>> {
     let text = std::fs::read_to_string(file)
         .with_context(|| format!("{}: cannot be read", file.display()))?;
     let lines = text.lines().filter(|line| !line.trim().is_empty());
-    Ok(lines.map(PathBuf::from).collect())
+    let targets: Vec<PathBuf> = lines.map(PathBuf::from).collect();
+    ensure!(!targets.is_empty(), "{}: names no target", file.display());
+    Ok(targets)
 }
 
 /// The runs of these targets; the folders of their results are made.
