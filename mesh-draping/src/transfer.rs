@@ -7,6 +7,15 @@ use crate::draping::Beginning;
 use crate::start::Expected;
 use crate::{Draping, Error, Outcome, Pair, Parts, Population, Preset, Source, Stages, Target};
 
+/// What the frames of a motion came to so far, in the target's coordinates.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Motion {
+    /// The result of the first frame, which was draped like any other pair.
+    pub first: Positions,
+    /// The result of the frame before.
+    pub before: Positions,
+}
+
 /// A drape that is about to begin.
 ///
 /// ```no_run
@@ -94,6 +103,18 @@ impl Transfer {
     pub fn with_start(self, shape: Positions) -> Self {
         Self {
             expected: Expected::Nearly(shape),
+            is_stand_in_allowed: false,
+            ..self
+        }
+    }
+
+    /// The drape is the next frame of a motion: it starts from the result of the frame before, as by [`Self::with_start`], and
+    /// holds to the angles and areas of the first frame's result. The same body keeps these, so that they count more than
+    /// between two bodies, and lead vertices back that slid along the surface ([`neural_drape::DrapeConfig::following`]).
+    #[must_use]
+    pub fn with_motion(self, motion: Motion) -> Self {
+        Self {
+            expected: Expected::Next(motion),
             is_stand_in_allowed: false,
             ..self
         }

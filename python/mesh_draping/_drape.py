@@ -63,6 +63,8 @@ class Drape:
     ``truth``: where each vertex belongs, to judge by: a path, or an array of shape (n, 3).
     ``start``: a shape of the source that nearly fits, likewise: the result of the frame before. No start is searched then, and
     the run is a third as long.
+    ``first_frame``: the result of the first frame of a motion, likewise, beside ``start``: the surface holds to its angles and
+    areas, which lead back what slid along it.
     ``smooth_change``: weight of an even change along the surface from where the drape starts: over the frames of a motion less
     trembling. 50 is a good value; with 500 it lags behind.
     ``config``: a TOML file of settings over those of the preset. ``settings``: single settings over both, by the names of
@@ -87,6 +89,7 @@ class Drape:
         prior: Iterable[Any] = (),
         truth: Any = None,
         start: Any = None,
+        first_frame: Any = None,
         config: Optional[Path] = None,
         **settings: Any,
     ) -> None:
@@ -105,7 +108,8 @@ class Drape:
             smooth_change=smooth_change,
             prior=[shape for shape in (positions(self.source, one) for one in prior) if shape is not None],
         )
-        self._native = _native.Draping(inputs, chosen, *(positions(self.source, shape) for shape in (truth, start)))
+        shapes = (positions(self.source, shape) for shape in (truth, start, first_frame))
+        self._native = _native.Draping(inputs, chosen, *shapes)
 
     def step(self) -> Optional[Step]:
         """One iteration; None when the run is over."""

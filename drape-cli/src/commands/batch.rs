@@ -10,7 +10,7 @@ use mesh_draping::Preset;
 use super::evaluate::tell;
 use crate::args::{is_pipe, MorphArgs, SettingsArgs, WeldArgs};
 use crate::output::{check_distinct, check_mesh, say};
-use crate::suite::{self, stem, Method, Pair, Pool, Shard, Task};
+use crate::suite::{self, stem, Frames, Method, Pair, Pool, Shard, Task};
 use crate::FAILED;
 
 #[derive(Debug, clap::Args)]
@@ -155,7 +155,8 @@ fn tasks(args: &Args, places: &[Place]) -> anyhow::Result<Vec<Task>> {
     let mut tasks = Vec::with_capacity(places.len());
     for place in places {
         make_ready(args, place)?;
-        tasks.push(task(args, &options, place, tasks.last()));
+        let motion = if args.sequence { &tasks[..] } else { &[] };
+        tasks.push(task(args, &options, place, motion));
     }
     Ok(tasks)
 }
@@ -184,8 +185,8 @@ fn make_ready(args: &Args, Place { target, output }: &Place) -> anyhow::Result<(
     check_distinct(output, &[&args.source, target])
 }
 
-/// The run of a target, after that of the frame before.
-fn task(args: &Args, options: &[String], place: &Place, before: Option<&Task>) -> Task {
+/// The run of a target, after those of the frames of its motion so far.
+fn task(args: &Args, options: &[String], place: &Place, motion: &[Task]) -> Task {
     let Place { target, output } = place;
     let method = match (&args.settings.config, &args.settings.preset) {
         (Some(path), _) => Method::Config(path.clone()),
@@ -193,7 +194,7 @@ fn task(args: &Args, options: &[String], place: &Place, before: Option<&Task>) -
     };
     let landmarks = args.landmarks.as_deref();
     let landmarks = landmarks.map(|pattern| PathBuf::from(fill(pattern, &args.source, target)));
-    let before = before.filter(|_| args.sequence);
+    let (first, before) = (motion.first(), motion.last());
     Task {
         pair: Pair {
             name: stem(output),
@@ -204,7 +205,10 @@ fn task(args: &Args, options: &[String], place: &Place, before: Option<&Task>) -
             truth: None,
             judge: None,
         },
-        from: before.map(|frame| frame.output.clone()),
+        frames: first.zip(before).map(|(first, before)| Frames {
+            first: first.output.clone(),
+            before: before.output.clone(),
+        }),
         method,
         options: options_of(args, options, before.is_none()),
         seed: args.settings.seed.unwrap_or(0),

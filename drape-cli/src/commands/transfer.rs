@@ -7,7 +7,7 @@ use std::process::ExitCode;
 use mesh_core::io::write_atomic;
 use mesh_core::Positions;
 use mesh_draping::mesh_metrics::Report;
-use mesh_draping::{Outcome, Pair, Population, Stages, Transfer};
+use mesh_draping::{Motion, Outcome, Pair, Population, Stages, Transfer};
 use mesh_render::{Gallery, Image, Page, View, DISTANCE_AT_TOP};
 
 use crate::args::{
@@ -58,6 +58,9 @@ pub(crate) struct Args {
     /// as long
     #[arg(long, value_name = "FILE")]
     pub(super) from: Option<PathBuf>,
+    /// The result of a motion's first frame: the surface holds to its angles and areas, which lead back what slid along it
+    #[arg(long, value_name = "FILE", requires = "from")]
+    pub(super) first_frame: Option<PathBuf>,
     /// Weight of an even change along the surface from that shape: less trembling over the frames of a motion. 50 is a
     /// good value; with 500 it lags behind
     #[arg(long, value_name = "WEIGHT", requires = "from")]
@@ -114,7 +117,10 @@ pub(super) fn drape_files(args: &Args) -> anyhow::Result<Done<'_>> {
     let mut pair = stages.time("reading", || inputs.read())?;
     pair.source = pair.source.with_morphs(args.morphs.morphs.into());
     let truth = read_shape(args.truth.as_deref(), &pair)?;
-    let from = read_shape(args.from.as_deref(), &pair)?;
+    let frames = (
+        read_shape(args.from.as_deref(), &pair)?,
+        read_shape(args.first_frame.as_deref(), &pair)?,
+    );
     let prior = read_prior(args, &pair, &mut stages)?;
     check_bakeable(&args.bake.maps(), &pair.source, &args.target)?;
     let mut warnings = words::about_inputs(&pair);
@@ -137,7 +143,10 @@ pub(super) fn drape_files(args: &Args) -> anyhow::Result<Done<'_>> {
     if args.symmetric {
         transfer = transfer.symmetric();
     }
-    transfer = expected(transfer, (from, args.smooth_change), prior);
+    if let Some(weight) = args.smooth_change {
+        transfer = transfer.with_smooth_change(weight);
+    }
+    transfer = expected(transfer, frames, prior);
     let mut outcome = drape(transfer)?;
     let notes: Vec<String> = words::notes(&outcome.notes).collect();
     warn(&notes);
@@ -165,20 +174,17 @@ fn read_prior(args: &Args, pair: &Pair, stages: &mut Stages) -> anyhow::Result<O
     args.prior.as_deref().map(read).transpose()
 }
 
-/// From a shape on, which changes as evenly as is asked for; or with the shapes that the source took before.
+/// After the frame before and the first one; or with the shapes that the source took before.
 fn expected(
     transfer: Transfer,
-    (from, smooth_change): (Option<Positions>, Option<f64>),
+    frames: (Option<Positions>, Option<Positions>),
     prior: Option<Population>,
 ) -> Transfer {
-    let transfer = match smooth_change {
-        Some(weight) => transfer.with_smooth_change(weight),
-        None => transfer,
-    };
-    match (from, prior) {
-        (Some(from), _) => transfer.with_start(from),
-        (None, Some(prior)) => transfer.with_prior(prior),
-        (None, None) => transfer,
+    match (frames, prior) {
+        ((Some(before), Some(first)), _) => transfer.with_motion(Motion { first, before }),
+        ((Some(before), None), _) => transfer.with_start(before),
+        ((None, _), Some(prior)) => transfer.with_prior(prior),
+        ((None, _), None) => transfer,
     }
 }
 
@@ -207,6 +213,7 @@ fn check_outputs(args: &Args) -> anyhow::Result<()> {
         args.landmarks.as_ref(),
         args.truth.as_ref(),
         args.from.as_ref(),
+        args.first_frame.as_ref(),
     ]
     .into_iter()
     .flatten()

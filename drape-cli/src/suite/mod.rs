@@ -35,8 +35,8 @@ const STORE: &str = "results.jsonl";
 pub(crate) struct Task {
     pub(crate) pair: Pair,
     pub(crate) method: Method,
-    /// The result that the run starts from: the frame before.
-    pub(crate) from: Option<PathBuf>,
+    /// The frames of the motion so far.
+    pub(crate) frames: Option<Frames>,
     /// More options of the command line.
     pub(crate) options: Vec<String>,
     pub(crate) seed: u64,
@@ -56,6 +56,13 @@ pub(crate) struct Pair {
     pub(crate) truth: Option<PathBuf>,
     /// Target to judge against in place of the one that was draped over.
     pub(crate) judge: Option<PathBuf>,
+}
+
+/// Results of a motion that the next frame follows.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Frames {
+    pub(crate) first: PathBuf,
+    pub(crate) before: PathBuf,
 }
 
 /// The settings of a run.

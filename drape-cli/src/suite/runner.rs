@@ -10,7 +10,7 @@ use anyhow::{anyhow, Context as _};
 use serde::Deserialize;
 
 use super::row::{append, Row};
-use super::{Method, Task, INITIAL};
+use super::{Frames, Method, Task, INITIAL};
 use crate::Program;
 
 /// How to run.
@@ -184,8 +184,9 @@ impl Pool {
         if let Some(truth) = &task.pair.truth {
             option("--truth", text(truth));
         }
-        if let Some(from) = &task.from {
-            option("--from", text(from));
+        if let Some(Frames { first, before }) = &task.frames {
+            option("--from", text(before));
+            option("--first-frame", text(first));
         }
         match &task.method {
             _ if is_initial => (),
@@ -216,7 +217,8 @@ impl Task {
             pair.truth.as_ref(),
             pair.judge.as_ref(),
             config,
-            self.from.as_ref(),
+            self.frames.as_ref().map(|frames| &frames.first),
+            self.frames.as_ref().map(|frames| &frames.before),
         ];
         [Some(&pair.source), Some(&pair.target)]
             .into_iter()
