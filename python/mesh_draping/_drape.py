@@ -8,8 +8,9 @@ from typing import Any, Callable, Iterable, Iterator, Optional, Sequence, Union
 
 from . import _native
 from ._judge import positions
+from ._numpy import Array
 from ._settings import resolved as resolved_settings
-from ._shapes import Array, Gathered, Path, as_source, as_target, gathered, rows
+from ._shapes import Gathered, Path, as_source, as_target, gathered, rows
 from ._warp import Warp
 from .landmarks import resolved
 

@@ -17,7 +17,8 @@ from typing import Any, Dict, List, NamedTuple, Optional, Sequence
 import numpy as np
 
 from . import _native
-from ._shapes import Array, Path, Source, Target, as_source, as_target
+from ._numpy import Array
+from ._shapes import Path, Source, Target, as_source, as_target
 from .landmarks import Entry
 
 #: Rows of MediaPipe's face mesh, by what is there. Left and right are those of the person.

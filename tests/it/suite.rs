@@ -136,6 +136,7 @@ fn frames_of_a_motion_start_from_those_before() {
         .collect();
     assert!(!commands[0].contains("--from") && commands[0].contains("--landmarks"));
     assert!(commands[1].contains("done/target.obj") && commands[2].contains("done/b.obj"));
+    assert!(commands[2].contains(r#""--first-frame","done/target.obj""#));
     assert!(!commands[1].contains("--landmarks"));
     let evenly: Vec<bool> = (commands.iter())
         .map(|command| command.contains("--smooth-change=50"))
