@@ -38,11 +38,20 @@ impl DrapeConfig {
         config
     }
 
-    /// The end of a run for the next frame of a motion: as [`Self::refining`], but vertices slide along the surface to where
-    /// angles and areas lead, which count more: one body keeps them while it moves ([`Drape::hold_to`](crate::Drape::hold_to)).
+    /// A run for the next frame of a motion, which starts from the one before: the last weights and samples, from coarse to
+    /// fine as the whole run goes, so that a limb can slide back as one. Vertices slide to where angles and areas lead, which
+    /// count more: one body keeps them while it moves ([`Drape::hold_to`](crate::Drape::hold_to)).
     #[must_use]
     pub fn following(&self, n_iterations: usize) -> Self {
-        let mut config = self.refining(n_iterations);
+        let mut config = Self {
+            parametrization: self.parametrization.clone(),
+            learning_rate: LearningRate {
+                warm_up: 0,
+                decay: 1.0,
+                ..self.learning_rate
+            },
+            ..self.refining(n_iterations)
+        };
         for stage in &mut config.stages {
             for weights in [&mut stage.from, &mut stage.to] {
                 weights.corner_angle *= SAME_BODY;
