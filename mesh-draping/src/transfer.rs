@@ -133,7 +133,7 @@ impl Transfer {
     }
 
     /// The shape changes evenly along its surface from where the drape starts, by this weight: from the frame before, so that
-    /// a motion trembles less and lags behind a little ([`mesh_loss::SmoothChange`]). At 50 it trembles less and lags hardly, at 500 it lags.
+    /// a motion trembles less, and limbs that turn lag behind ([`mesh_loss::SmoothChange`]). 50 is a good value.
     #[must_use]
     pub fn with_smooth_change(mut self, weight: f64) -> Self {
         self.preset.drape = self.preset.drape.with_smooth_change(weight);

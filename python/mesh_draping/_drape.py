@@ -67,7 +67,7 @@ class Drape:
     ``first_frame``: the result of the first frame of a motion, likewise, beside ``start``: the surface holds to its angles and
     areas, which lead back what slid along it.
     ``smooth_change``: weight of an even change along the surface from where the drape starts: over the frames of a motion less
-    trembling. 50 is a good value; with 500 it lags behind.
+    trembling, and limbs that lag. 50 is a good value.
     ``config``: a TOML file of settings over those of the preset. ``settings``: single settings over both, by the names of
     :func:`mesh_draping.settings`, such as ``overlap="source-partial"`` or ``sampling={"n_samples": 4000}``.
     """

@@ -49,12 +49,12 @@ pub(crate) struct Args {
     /// what --shard K/N drapes
     #[arg(long, conflicts_with_all = ["shard", "sequence"])]
     left: bool,
-    /// The targets are the frames of a motion, in order: each drape starts from the result of the one before. Landmarks
-    /// may lack from the second frame on
+    /// The targets are the frames of a motion, in order: each drape starts from the result of the one before, and holds to
+    /// the angles and areas of the first. Landmarks may lack from the second frame on
     #[arg(long, conflicts_with_all = ["shard", "jobs"])]
     sequence: bool,
-    /// Weight of an even change along the surface from frame to frame: less trembling. 50 is a good value; with 500 it lags
-    /// behind
+    /// Weight of an even change along the surface from frame to frame: less trembling, and limbs that lag behind. 50 is a
+    /// good value
     #[arg(long, value_name = "WEIGHT", requires = "sequence")]
     smooth_change: Option<f64>,
     /// Expect shapes like the results in this folder, as `transfer` does; not a folder that this batch writes to

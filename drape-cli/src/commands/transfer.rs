@@ -61,8 +61,8 @@ pub(crate) struct Args {
     /// The result of a motion's first frame: the surface holds to its angles and areas, which lead back what slid along it
     #[arg(long, value_name = "FILE", requires = "from")]
     pub(super) first_frame: Option<PathBuf>,
-    /// Weight of an even change along the surface from that shape: less trembling over the frames of a motion. 50 is a
-    /// good value; with 500 it lags behind
+    /// Weight of an even change along the surface from that shape: less trembling over the frames of a motion, and limbs
+    /// that lag behind. 50 is a good value
     #[arg(long, value_name = "WEIGHT", requires = "from")]
     pub(super) smooth_change: Option<f64>,
     /// Expect a shape like the results in this folder: their mean and the modes in which they differ. The one that fits best is
