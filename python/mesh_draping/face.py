@@ -167,7 +167,7 @@ def _surest(surface: _native.Surface, centre: Array, half: float, detector: Any)
         for sign in (1.0, -1.0):
             up, side = np.zeros(3), np.zeros(3)
             up[axis], side[(axis + 1) % 3] = sign, 1.0
-            for turn in np.arange(0, 360, 45):
+            for turn in range(0, 360, 45):
                 view = View(centre, _turned(side, up, turn), up, half)
                 sure = detector.confidence(_picture(surface, view, COARSE))
                 if sure > most:

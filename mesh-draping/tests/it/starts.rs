@@ -1,8 +1,6 @@
 //! Which start is taken, and what is left out of a shape.
 
-use mesh_draping::mesh_core::{
-    shapes, Point3, PolygonSoup, Positions, TargetSurface as _, Vector3,
-};
+use mesh_draping::mesh_core::{shapes, Point3, PolygonSoup, Positions, Vector3};
 use mesh_draping::{
     InitialMethod, Motion, Note, Outcome, Pair, Population, Preset, Seams, Source, Target, Transfer,
 };
