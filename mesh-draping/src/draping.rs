@@ -123,9 +123,7 @@ impl Draping {
                 set_up(draped_pair, config, &initial, &first_regions)
             })
         })?;
-        if let Some(shape) = expected.held() {
-            drape.hold_to(shape)?;
-        }
+        expected.hold(&mut drape)?;
         let (by_landmarks, initial) = carried(stand_in.as_ref(), by_landmarks, initial);
         let mut draping = Self {
             by_landmarks,

@@ -1,7 +1,7 @@
 //! What is known of a result before it is come to.
 
 use mesh_core::Positions;
-use neural_drape::DrapeError;
+use neural_drape::{Drape, DrapeError};
 
 use crate::{Motion, Pair, Population};
 
@@ -17,11 +17,11 @@ pub(crate) enum Expected {
 }
 
 impl Expected {
-    /// The shape that the surface holds to, where it is not that of the source.
-    pub(crate) fn held(&self) -> Option<&Positions> {
+    /// Holds the surface to the first frame of a motion.
+    pub(crate) fn hold(&self, drape: &mut Drape) -> Result<(), DrapeError> {
         match self {
-            Self::Next(motion) => Some(&motion.first),
-            Self::Nothing | Self::Nearly(_) | Self::OneOf(_) => None,
+            Self::Next(motion) => drape.hold_to(&motion.first),
+            Self::Nothing | Self::Nearly(_) | Self::OneOf(_) => Ok(()),
         }
     }
 
