@@ -117,10 +117,7 @@ pub(super) fn drape_files(args: &Args) -> anyhow::Result<Done<'_>> {
     let mut pair = stages.time("reading", || inputs.read())?;
     pair.source = pair.source.with_morphs(args.morphs.morphs.into());
     let truth = read_shape(args.truth.as_deref(), &pair)?;
-    let frames = (
-        read_shape(args.from.as_deref(), &pair)?,
-        read_shape(args.first_frame.as_deref(), &pair)?,
-    );
+    let frames = Frames::read(args, &pair)?;
     let prior = read_prior(args, &pair, &mut stages)?;
     check_bakeable(&args.bake.maps(), &pair.source, &args.target)?;
     let mut warnings = words::about_inputs(&pair);
@@ -142,9 +139,6 @@ pub(super) fn drape_files(args: &Args) -> anyhow::Result<Done<'_>> {
     }
     if args.symmetric {
         transfer = transfer.symmetric();
-    }
-    if let Some(weight) = args.smooth_change {
-        transfer = transfer.with_smooth_change(weight);
     }
     transfer = expected(transfer, frames, prior);
     let mut outcome = drape(transfer)?;
@@ -174,17 +168,34 @@ fn read_prior(args: &Args, pair: &Pair, stages: &mut Stages) -> anyhow::Result<O
     args.prior.as_deref().map(read).transpose()
 }
 
-/// After the frame before and the first one; or with the shapes that the source took before.
-fn expected(
-    transfer: Transfer,
-    frames: (Option<Positions>, Option<Positions>),
-    prior: Option<Population>,
-) -> Transfer {
-    match (frames, prior) {
-        ((Some(before), Some(first)), _) => transfer.with_motion(Motion { first, before }),
-        ((Some(before), None), _) => transfer.with_start(before),
-        ((None, _), Some(prior)) => transfer.with_prior(prior),
-        ((None, _), None) => transfer,
+/// What a motion came to so far, and how evenly it shall go on.
+struct Frames {
+    before: Option<Positions>,
+    first: Option<Positions>,
+    smooth_change: Option<f64>,
+}
+
+impl Frames {
+    fn read(args: &Args, pair: &Pair) -> anyhow::Result<Self> {
+        Ok(Self {
+            before: read_shape(args.from.as_deref(), pair)?,
+            first: read_shape(args.first_frame.as_deref(), pair)?,
+            smooth_change: args.smooth_change,
+        })
+    }
+}
+
+/// After the frames of a motion so far; or with the shapes that the source took before.
+fn expected(transfer: Transfer, frames: Frames, prior: Option<Population>) -> Transfer {
+    let transfer = match frames.smooth_change {
+        Some(weight) => transfer.with_smooth_change(weight),
+        None => transfer,
+    };
+    match (frames.before, frames.first, prior) {
+        (Some(before), Some(first), _) => transfer.with_motion(Motion { first, before }),
+        (Some(before), None, _) => transfer.with_start(before),
+        (None, _, Some(prior)) => transfer.with_prior(prior),
+        (None, _, None) => transfer,
     }
 }
 
