@@ -1,8 +1,8 @@
 //! Which start is taken, and what is left out of a shape.
 
-use mesh_draping::mesh_core::{shapes, Point3, PolygonSoup, Positions, Vector3};
+use mesh_draping::mesh_core::{shapes, Point3, PolygonSoup, Positions};
 use mesh_draping::{
-    InitialMethod, Motion, Note, Outcome, Pair, Population, Preset, Seams, Source, Target, Transfer,
+    InitialMethod, Note, Outcome, Population, Preset, Seams, Source, Target, Transfer,
 };
 
 use crate::support::{ball_and_ellipsoid, same_bits, short};
@@ -120,46 +120,6 @@ fn a_shape_that_nearly_fits_is_a_start_of_a_short_run() {
     let wrong = Transfer::of_pair(pair, short(3)).with_start(vec![Point3::origin()].into());
     let told = wrong.start().err().map(|error| error.to_string());
     assert!(told.is_some_and(|told| told.contains("the shape to start from")));
-}
-
-#[test]
-fn in_a_motion_what_slid_along_the_surface_is_led_back() {
-    let (pair, preset) = (ball_and_ellipsoid(6), short(120));
-    let first = Transfer::of_pair(pair.clone(), preset.clone()).run();
-    let first = first.expect("the pair can be draped").draped;
-    let before = slid(&pair, &first);
-    let off = |x: &Positions| {
-        let moves = x.iter().zip(first.iter()).map(|(a, b)| (a - b).norm());
-        moves.sum::<f64>()
-    };
-    let transfer = || Transfer::of_pair(pair.clone(), preset.clone());
-    let kept = transfer().with_start(before.clone()).run();
-    let motion = Motion {
-        first: first.clone(),
-        before: before.clone(),
-    };
-    let led_back = transfer().with_motion(motion).run();
-    let (kept, led_back) = (kept.expect("a drape"), led_back.expect("a drape"));
-    let [slid, kept, led_back] = [&before, &kept.draped, &led_back.draped].map(off);
-    assert!(
-        led_back < 0.8 * kept && led_back < 0.8 * slid,
-        "{slid} {kept} {led_back}"
-    );
-}
-
-/// A shape whose middle is turned along the target.
-fn slid(pair: &Pair, shape: &Positions) -> Positions {
-    let mut center = Point3::origin();
-    shape
-        .iter()
-        .for_each(|p| center += p.coords / shape.len() as f64);
-    shape.map(|p| {
-        let d = p - center;
-        let (sin, cos) = (0.3 * (-d.x * d.x).exp()).sin_cos();
-        let turned = Vector3::new(d.x, cos * d.y - sin * d.z, sin * d.y + cos * d.z);
-        let target = pair.target.draped_over();
-        target.closest_point(&(center + turned)).point
-    })
 }
 
 /// Balls that are drawn out in different ways, where the target of [`ball_and_ellipsoid`] is.
