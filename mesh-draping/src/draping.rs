@@ -118,11 +118,12 @@ impl Draping {
         } = stages.time("initial deformation", || Start::find(&search, &expected))?;
         let initial = shape.positions;
         notes.extend(shape.notes);
-        let drape = stages.time_with_parts(DRAPING, |parts| {
+        let mut drape = stages.time_with_parts(DRAPING, |parts| {
             parts.time("set-up", || {
                 set_up(draped_pair, config, &initial, &first_regions)
             })
         })?;
+        expected.hold(&mut drape)?;
         let (by_landmarks, initial) = carried(stand_in.as_ref(), by_landmarks, initial);
         let mut draping = Self {
             by_landmarks,

@@ -24,6 +24,7 @@
 //! | relax, pull or slide a place of the result by hand | [`Stroke`], [`Draping::brush`] |
 //! | snap a place to a vertex, or to the most curved one | [`SnapPoints`] |
 //! | start from a shape that nearly fits | [`Transfer::with_start`] |
+//! | drape the frames of a motion | [`Transfer::with_motion`] |
 //! | start from what shapes of a population have in common | [`Population`] |
 //! | get a result as symmetric as the source | [`Transfer::symmetric`] |
 //! | drape on a thread of its own | [`Draping::spawn`], [`Background`] |
@@ -81,7 +82,7 @@ pub use snap::{SnapPoints, SNAP_REACH};
 pub use source::{GatheredPositions, Source};
 pub use stages::{Stages, DRAPING, REFINING};
 pub use target::Target;
-pub use transfer::Transfer;
+pub use transfer::{Motion, Transfer};
 
 // What the signatures above name, so that one crate is enough.
 pub use mesh_core;

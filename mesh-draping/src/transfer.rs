@@ -7,6 +7,15 @@ use crate::draping::Beginning;
 use crate::start::Expected;
 use crate::{Draping, Error, Outcome, Pair, Parts, Population, Preset, Source, Stages, Target};
 
+/// What the frames of a motion came to so far, in the target's coordinates.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Motion {
+    /// The result of the first frame, which was draped like any other pair.
+    pub first: Positions,
+    /// The result of the frame before.
+    pub before: Positions,
+}
+
 /// A drape that is about to begin.
 ///
 /// ```no_run
@@ -99,6 +108,18 @@ impl Transfer {
         }
     }
 
+    /// The drape is the next frame of a motion: it starts from the result of the frame before, as by [`Self::with_start`], and
+    /// holds to the angles and areas of the first frame's result. The same body keeps these, so that they count more than
+    /// between two bodies, and lead vertices back that slid along the surface ([`neural_drape::DrapeConfig::following`]).
+    #[must_use]
+    pub fn with_motion(self, motion: Motion) -> Self {
+        Self {
+            expected: Expected::Next(motion),
+            is_stand_in_allowed: false,
+            ..self
+        }
+    }
+
     /// The shape of a population that fits best ([`Population::fit`]) is one more start to try: where it comes out clearly
     /// better than the others and all of the source has a counterpart, by the trial that decides between them ([`InitialMethod::Tried`](crate::InitialMethod)), the
     /// drape starts there. At the end, what the target does not show is taken from the population, as far as that explains
@@ -112,7 +133,7 @@ impl Transfer {
     }
 
     /// The shape changes evenly along its surface from where the drape starts, by this weight: from the frame before, so that
-    /// a motion trembles less and lags behind a little ([`mesh_loss::SmoothChange`]). At 50 it trembles less and lags hardly, at 500 it lags.
+    /// a motion trembles less, and limbs that turn lag behind ([`mesh_loss::SmoothChange`]). 50 is a good value.
     #[must_use]
     pub fn with_smooth_change(mut self, weight: f64) -> Self {
         self.preset.drape = self.preset.drape.with_smooth_change(weight);

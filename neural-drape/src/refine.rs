@@ -4,6 +4,8 @@ use crate::{ContactConfig, DrapeConfig, LearningRate, ParametrizationConfig, Sta
 
 /// The largest step of the refinement beside that of the run.
 const STEP: f64 = 0.3;
+/// How much more angles and areas count where one body moves than between two bodies.
+const SAME_BODY: f64 = 10.0;
 
 impl DrapeConfig {
     /// The end of this run over again in `n_iterations`: its last weights and samples, its finest steps, which get smaller all the
@@ -35,6 +37,30 @@ impl DrapeConfig {
         }
         config
     }
+
+    /// A run for the next frame of a motion, which starts from the one before: the last weights and samples, from coarse to
+    /// fine as the whole run goes, so that a limb can slide back as one. Vertices slide to where angles and areas lead, which
+    /// count more: one body keeps them while it moves ([`Drape::hold_to`](crate::Drape::hold_to)).
+    #[must_use]
+    pub fn following(&self, n_iterations: usize) -> Self {
+        let mut config = Self {
+            parametrization: self.parametrization.clone(),
+            learning_rate: LearningRate {
+                warm_up: 0,
+                decay: 1.0,
+                ..self.learning_rate
+            },
+            ..self.refining(n_iterations)
+        };
+        for stage in &mut config.stages {
+            for weights in [&mut stage.from, &mut stage.to] {
+                weights.corner_angle *= SAME_BODY;
+                weights.area_kl *= SAME_BODY;
+                weights.drift = 0.0;
+            }
+        }
+        config
+    }
 }
 
 #[cfg(test)]
@@ -53,5 +79,15 @@ mod tests {
         assert_eq!(run.stages.last().map(|s| s.to), Some(stage.to));
         assert_eq!(refinement.sampling.n_samples, run.sampling.max_samples);
         assert!(refinement.learning_rate.at(0, 40) < run.learning_rate.peak);
+    }
+
+    #[test]
+    fn in_a_motion_structure_leads_along_the_surface() {
+        let refinement = DrapeConfig::standard().refining(40);
+        let next = DrapeConfig::standard().following(40);
+        assert!(next.check().is_ok());
+        let (weights, before) = (next.weights_at(20), refinement.weights_at(20));
+        assert!(before.drift > 0.0 && weights.drift == 0.0);
+        assert_eq!(weights.lambda(), before.lambda().map(|l| SAME_BODY * l));
     }
 }

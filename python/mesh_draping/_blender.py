@@ -4,10 +4,7 @@ from __future__ import annotations
 
 from typing import Any, Tuple
 
-import numpy as np
-from numpy.typing import NDArray
-
-Array = NDArray[Any]
+from ._numpy import Array, np
 
 
 def arrays(mesh: Any) -> "Tuple[Array, Array, Array]":

@@ -8,8 +8,9 @@ from typing import Any, Callable, Iterable, Iterator, Optional, Sequence, Union
 
 from . import _native
 from ._judge import positions
+from ._numpy import Array
 from ._settings import resolved as resolved_settings
-from ._shapes import Array, Gathered, Path, as_source, as_target, gathered, rows
+from ._shapes import Gathered, Path, as_source, as_target, gathered, rows
 from ._warp import Warp
 from .landmarks import resolved
 
@@ -63,8 +64,10 @@ class Drape:
     ``truth``: where each vertex belongs, to judge by: a path, or an array of shape (n, 3).
     ``start``: a shape of the source that nearly fits, likewise: the result of the frame before. No start is searched then, and
     the run is a third as long.
+    ``first_frame``: the result of the first frame of a motion, likewise, beside ``start``: the surface holds to its angles and
+    areas, which lead back what slid along it.
     ``smooth_change``: weight of an even change along the surface from where the drape starts: over the frames of a motion less
-    trembling. 50 is a good value; with 500 it lags behind.
+    trembling, and limbs that lag. 50 is a good value.
     ``config``: a TOML file of settings over those of the preset. ``settings``: single settings over both, by the names of
     :func:`mesh_draping.settings`, such as ``overlap="source-partial"`` or ``sampling={"n_samples": 4000}``.
     """
@@ -87,6 +90,7 @@ class Drape:
         prior: Iterable[Any] = (),
         truth: Any = None,
         start: Any = None,
+        first_frame: Any = None,
         config: Optional[Path] = None,
         **settings: Any,
     ) -> None:
@@ -105,7 +109,8 @@ class Drape:
             smooth_change=smooth_change,
             prior=[shape for shape in (positions(self.source, one) for one in prior) if shape is not None],
         )
-        self._native = _native.Draping(inputs, chosen, *(positions(self.source, shape) for shape in (truth, start)))
+        shapes = (positions(self.source, shape) for shape in (truth, start, first_frame))
+        self._native = _native.Draping(inputs, chosen, *shapes)
 
     def step(self) -> Optional[Step]:
         """One iteration; None when the run is over."""

@@ -5,10 +5,9 @@ from __future__ import annotations
 import json
 from typing import Any, NamedTuple
 
-import numpy as np
-
 from . import _native
-from ._shapes import Array, Path, Source, as_source, as_target, rows
+from ._numpy import Array
+from ._shapes import Path, Source, as_source, as_target, rows
 from .landmarks import resolved
 
 
@@ -47,8 +46,8 @@ def init(source: Any, target: Any, landmarks: Any = None, *, method: str = "stan
 
 def positions(source: Source, shape: Any) -> "Array | None":
     """Positions for the source's vertices from a path, a mesh or an array."""
-    if shape is None or isinstance(shape, np.ndarray):
-        return None if shape is None else rows(shape)
+    if shape is None:
+        return None
     if isinstance(shape, (str, bytes)) or hasattr(shape, "__fspath__"):
         return _native.read_vertices(source._native, shape)
     return rows(getattr(shape, "vertices", shape))

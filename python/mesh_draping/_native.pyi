@@ -136,7 +136,14 @@ class Step:
 
 @final
 class Draping:
-    def __new__(cls, inputs: Inputs, settings: Settings, truth: Optional[_Rows], start: Optional[_Rows]) -> Draping: ...
+    def __new__(
+        cls,
+        inputs: Inputs,
+        settings: Settings,
+        truth: Optional[_Rows],
+        start: Optional[_Rows],
+        first_frame: Optional[_Rows],
+    ) -> Draping: ...
     def step(self) -> Optional[Step]: ...
     @property
     def iteration(self) -> int: ...

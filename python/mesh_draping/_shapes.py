@@ -5,12 +5,9 @@ from __future__ import annotations
 import os
 from typing import Any, Iterable, Mapping, Sequence, Tuple, Union
 
-import numpy as np
-from numpy.typing import NDArray
-
 from . import _native
+from ._numpy import Array, np
 
-Array = NDArray[Any]
 Path = Union[str, "os.PathLike[str]"]
 Faces = Union[Array, Sequence[Sequence[int]]]
 Polygons = Tuple[Array, Array]

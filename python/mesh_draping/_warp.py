@@ -5,7 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 from . import _native
-from ._shapes import Array, Path, rows
+from ._numpy import Array
+from ._shapes import Path, rows
 
 
 class Warp:

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import json
 import math
-from pathlib import Path as _Path
-from typing import Any, Iterable, Iterator, List, NamedTuple, Union
-
-import numpy as np
+from typing import TYPE_CHECKING, Any, Iterable, Iterator, List, NamedTuple, Union
 
 from . import _native
-from ._shapes import Array, Gathered, Path, gathered
+from ._numpy import Array, np
+from ._shapes import Gathered, Path, gathered
+
+if TYPE_CHECKING:
+    from pathlib import Path as _Path
 
 #: Kinds of creature.
 PLANS = ("quadruped", "person", "bird", "insect", "head")
@@ -84,6 +85,8 @@ def write(folder: Path, plan: str = "quadruped", seed: int = 0, **dial: Any) -> 
 
     ``dial``: as for :func:`pair`.
     """
+    from pathlib import Path as _Path
+
     made = _made(plan, seed, **dial)
     folder = _Path(folder)
     folder.mkdir(parents=True, exist_ok=True)

@@ -17,7 +17,8 @@ from typing import Any, Dict, List, NamedTuple, Optional, Sequence
 import numpy as np
 
 from . import _native
-from ._shapes import Array, Path, Source, Target, as_source, as_target
+from ._numpy import Array
+from ._shapes import Path, Source, Target, as_source, as_target
 from .landmarks import Entry
 
 #: Rows of MediaPipe's face mesh, by what is there. Left and right are those of the person.
@@ -166,7 +167,7 @@ def _surest(surface: _native.Surface, centre: Array, half: float, detector: Any)
         for sign in (1.0, -1.0):
             up, side = np.zeros(3), np.zeros(3)
             up[axis], side[(axis + 1) % 3] = sign, 1.0
-            for turn in np.arange(0, 360, 45):
+            for turn in range(0, 360, 45):
                 view = View(centre, _turned(side, up, turn), up, half)
                 sure = detector.confidence(_picture(surface, view, COARSE))
                 if sure > most:

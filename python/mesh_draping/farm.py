@@ -9,7 +9,8 @@
 The scheduler may stand on this machine (``Client()``), or be one of ``dask-jobqueue`` for Slurm, PBS, SGE or LSF. Every
 target is a task of its own, and each task is the command ``drape batch … --shard K/N`` in a process of its own: the same
 bits as in series. A worker that is lost loses only the target that it was at, which another does again; what is done is
-not done again, now or when the same call is made another day. Workers see the files at the same paths as the caller.
+not done again, now or when the same call is made another day: the caller looks once what is left. Workers see the files at
+the same paths as the caller, and read the list of targets from the folder of tables.
 """
 
 from __future__ import annotations
@@ -62,11 +63,12 @@ def batch(
     from dask.distributed import Client
 
     line = command(source, targets, output, landmarks=landmarks, summary=summary, options=options)
-    if client is None:
+    left = _left(line)
+    if client is not None:
+        _drape_all(client, line, left, threads)
+    elif left:
         with Client(processes=True) as own:
-            _drape_all(own, line, threads)
-    else:
-        _drape_all(client, line, threads)
+            _drape_all(own, line, left, threads)
     return _gathered(line, Path(line.folder) / line.summary)
 
 
@@ -92,22 +94,32 @@ def command(
     summary: PathLike = "drape-batch",
     options: Iterable[str] = (),
 ) -> Line:
-    """The command line of a batch, as :func:`batch` gives it to its workers."""
+    """The command line of a batch, as :func:`batch` gives it to its workers; the file ``targets.txt`` in the folder of tables
+    names the targets."""
     paths = [os.fspath(target) for target in targets]
-    arguments = ["batch", os.fspath(source), *paths, "--output", output, "--summary", os.fspath(summary)]
+    listed = Path(summary, "targets.txt")
+    listed.parent.mkdir(parents=True, exist_ok=True)
+    listed.write_text("".join(path + "\n" for path in paths))
+    arguments = ["batch", os.fspath(source), "--targets-from", str(listed)]
+    arguments += ["--output", output, "--summary", os.fspath(summary)]
     if landmarks is not None:
         arguments += ["--landmarks", landmarks]
     return Line([*arguments, *options], os.fspath(summary), len(paths), os.getcwd())
 
 
-def _drape_all(client: Any, line: Line, threads: int) -> None:
-    """One task per target; a task whose worker is lost is given to another."""
+def _left(line: Line) -> "List[int]":
+    """The numbers of the targets that are not done yet, counted from 1."""
+    return [int(number) for number in _run([*line.arguments, "--left"], line.folder).split()]
+
+
+def _drape_all(client: Any, line: Line, left: "List[int]", threads: int) -> None:
+    """One task per target that is left; a task whose worker is lost is given to another."""
     from dask.distributed import as_completed
 
     # Not by content: a call that is made again looks again at what is done.
     tasks = client.map(
         _drape_one,
-        [(line, k, threads) for k in range(1, line.n_targets + 1)],
+        [(line, k, threads) for k in left],
         pure=False,
         retries=TRIES,
     )
@@ -129,9 +141,10 @@ def _gathered(line: Line, summary: Path) -> Done:
     return Done(rows, summary / "results.csv", summary / "index.html")
 
 
-def _run(arguments: "List[str]", folder: str) -> None:
-    """The command in a process of its own, which goes where this one goes."""
+def _run(arguments: "List[str]", folder: str) -> str:
+    """The command in a process of its own, which goes where this one goes; what it printed."""
     line = [sys.executable, "-m", "mesh_draping", *arguments]
     ended = subprocess.run(line, cwd=folder, capture_output=True, text=True)
     if ended.returncode not in (0, NOT_ALL):
         raise RuntimeError(ended.stderr.strip() or f"drape ended with {ended.returncode}")
+    return ended.stdout

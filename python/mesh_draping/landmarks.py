@@ -17,9 +17,8 @@ import os
 import warnings
 from typing import Any, Iterable, List, Mapping, NamedTuple
 
-import numpy as np
-
 from . import _native
+from ._numpy import np
 from ._shapes import Path, Source, Target, as_source, as_target
 
 #: An entry of a landmark file.

@@ -4,7 +4,7 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use mesh_draping::mesh_core::Positions;
-use mesh_draping::{Parts, Population, Transfer};
+use mesh_draping::{Motion, Parts, Population, Transfer};
 use numpy::PyArray2;
 use pyo3::prelude::*;
 
@@ -92,6 +92,7 @@ impl Draping {
         settings: &Settings,
         truth: Option<Rows<'_>>,
         start: Option<Rows<'_>>,
+        first_frame: Option<Rows<'_>>,
     ) -> PyResult<Self> {
         let pair = inputs.landmarks.get().pair(&inputs.source, &inputs.target);
         let mut transfer =
@@ -105,9 +106,7 @@ impl Draping {
         if inputs.is_symmetric {
             transfer = transfer.symmetric();
         }
-        if let Some(start) = start {
-            transfer = transfer.with_start(inputs.source.gathered(&start, "the start")?);
-        }
+        transfer = followed(transfer, &inputs.source, start, first_frame)?;
         let prior = inputs.prior.clone();
         let start = move || match Population::of(&prior) {
             Some(population) => transfer.with_prior(population).start(),
@@ -229,6 +228,28 @@ impl Draping {
             return Cancelled::new_err("the drape was cancelled");
         }
         Error::new_err("the drape is finished; start another one")
+    }
+}
+
+/// From a shape on, or after the first frame of a motion and the one before.
+fn followed(
+    transfer: Transfer,
+    source: &Source,
+    start: Option<Rows<'_>>,
+    first_frame: Option<Rows<'_>>,
+) -> PyResult<Transfer> {
+    let gathered = |rows: Option<Rows<'_>>, what| {
+        let shape = rows.map(|rows| source.gathered(&rows, what));
+        shape.transpose()
+    };
+    let before = gathered(start, "the start")?;
+    match (before, gathered(first_frame, "the first frame")?) {
+        (Some(before), Some(first)) => Ok(transfer.with_motion(Motion { first, before })),
+        (Some(before), None) => Ok(transfer.with_start(before)),
+        (None, Some(_)) => Err(Error::new_err(
+            "a first frame needs a start: the frame before",
+        )),
+        (None, None) => Ok(transfer),
     }
 }
 

@@ -2,6 +2,7 @@
 
 import json
 import os
+import pickle
 import signal
 import threading
 import time
@@ -68,6 +69,16 @@ def _same_as_in_series(scans, targets):
         assert (scans / "out" / name).read_bytes() == (scans / "series" / name).read_bytes()
     rows = json.loads((scans / "series/results.json").read_text())
     assert len(rows) == len(targets)
+
+
+def test_what_a_worker_is_told_does_not_grow_with_the_list(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    few, many = (farm.command("a.obj", [f"{k}.ply" for k in range(n)], "{target}.obj") for n in (2, 2000))
+    assert len(pickle.dumps(many)) < len(pickle.dumps(few)) + 10
+    monkeypatch.setattr(farm, "_drape_one", lambda job: (tmp_path / f"{job[1]}.done").touch())
+    with Client(processes=False, dashboard_address=None) as client:
+        farm._drape_all(client, many, list(range(1, 2001)), threads=1)
+    assert {path.stem for path in tmp_path.glob("*.done")} == {str(k) for k in range(1, 2001)}
 
 
 def test_a_target_that_cannot_be_draped_is_a_row_of_its_own(scans, monkeypatch):

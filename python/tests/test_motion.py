@@ -1,6 +1,7 @@
 """Frames of a motion, each from the one before."""
 
 import numpy as np
+import pytest
 import trimesh
 
 import mesh_draping as md
@@ -20,6 +21,19 @@ def test_a_frame_that_starts_from_the_one_before_is_near_the_truth_and_soon_done
         result = run.run()
         assert result.figures["mean_l2_sum"] < before["mean_l2_sum"]
         assert result.figures["truth_mean"] < 0.02
+
+
+def test_what_slides_along_the_surface_is_led_back_to_the_first_frame():
+    first, *frames = list(md.bench.motion("person", 0, 24, ratio=1.2))[:7:2]
+    kept = led = first.truth
+    for frame in frames:
+        given = (frame.source, frame.target, frame.landmarks, "quick")
+        kept = md.drape(*given, start=kept)
+        led = md.drape(*given, start=led, first_frame=first.truth)
+    off_kept, off_led = (np.linalg.norm(end.vertices - frames[-1].truth, axis=1).mean() for end in (kept, led))
+    assert off_led < 0.7 * off_kept
+    with pytest.raises(md.Error, match="a first frame needs a start"):
+        md.drape(*given, first_frame=first.truth)
 
 
 def test_a_result_is_as_symmetric_as_its_source():

@@ -107,3 +107,15 @@ def test_colours_normals_and_relief_are_baked(result, folder, tmp_path):
     assert heads == [bytes([0, 0, 0, 64, 0, 0, 0, 64, 16, samples]) for samples in (2, 2, 0)]
     with pytest.raises(md.Error, match="neither colours"):
         result.bake(maps[0])
+
+
+def test_a_drape_from_file_to_file_does_without_numpy(folder, tmp_path):
+    lines = (
+        "import sys, mesh_draping as md",
+        "result = md.drape('source.obj', 'target.ply', 'landmarks.json', config='short.toml')",
+        f"result.write({str(tmp_path / 'draped.obj')!r}), result.figures, str(result)",
+        "assert 'numpy' not in sys.modules",
+        "assert result.vertices.shape[1] == 3",
+    )
+    ended = subprocess.run([sys.executable, "-c", "\n".join(lines)], cwd=folder, capture_output=True, text=True)
+    assert ended.returncode == 0, ended.stderr

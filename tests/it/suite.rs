@@ -90,6 +90,37 @@ fn parts_of_a_batch_come_together_in_one_table() {
 }
 
 #[test]
+fn what_is_left_of_a_listed_batch_is_told_by_number() {
+    let place = Workplace::new();
+    std::fs::copy(place.path("target.ply"), place.path("second.ply")).expect("a copy");
+    place.write("list.txt", "target.ply\n\nsecond.ply\nthird.ply\n");
+    let line = "batch source.obj --targets-from list.txt -o done/{target}.obj --config short.toml";
+    assert_eq!(
+        place.drape(&format!("{line} --left")).well().stdout,
+        "1\n2\n3\n"
+    );
+    place.drape(&format!("{line} --shard 2/3")).well();
+    assert_eq!(
+        place.drape(&format!("{line} --left")).well().stdout,
+        "1\n3\n"
+    );
+    assert!(!place.exists("done/target.obj"));
+
+    let listed_twice = place.drape(&format!("{line} second.ply --left"));
+    assert_eq!(
+        (listed_twice.code, listed_twice.stderr.lines().count()),
+        (Some(2), 1)
+    );
+    place.write("list.txt", "\n");
+    let none = place.drape(&format!("{line} --left"));
+    assert!(
+        none.code == Some(2) && none.stderr.contains("names no target"),
+        "{}",
+        none.stderr
+    );
+}
+
+#[test]
 fn frames_of_a_motion_start_from_those_before() {
     let place = Workplace::new();
     for name in ["b.ply", "c.ply"] {
@@ -105,6 +136,7 @@ fn frames_of_a_motion_start_from_those_before() {
         .collect();
     assert!(!commands[0].contains("--from") && commands[0].contains("--landmarks"));
     assert!(commands[1].contains("done/target.obj") && commands[2].contains("done/b.obj"));
+    assert!(commands[2].contains(r#""--first-frame","done/target.obj""#));
     assert!(!commands[1].contains("--landmarks"));
     let evenly: Vec<bool> = (commands.iter())
         .map(|command| command.contains("--smooth-change=50"))

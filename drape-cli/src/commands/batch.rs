@@ -1,15 +1,16 @@
 //! `drape batch`
 
+use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use anyhow::{ensure, Context as _};
+use anyhow::{bail, ensure, Context as _};
 use mesh_draping::Preset;
 
 use super::evaluate::tell;
 use crate::args::{is_pipe, MorphArgs, SettingsArgs, WeldArgs};
 use crate::output::{check_distinct, check_mesh, say};
-use crate::suite::{self, stem, Method, Pair, Pool, Shard, Task};
+use crate::suite::{self, stem, Frames, Method, Pair, Pool, Shard, Task};
 use crate::FAILED;
 
 #[derive(Debug, clap::Args)]
@@ -17,8 +18,11 @@ pub(crate) struct Args {
     /// Mesh to drape over every target
     source: PathBuf,
     /// Meshes or point clouds to drape it over
-    #[arg(required = true)]
+    #[arg(required_unless_present = "targets_from")]
     targets: Vec<PathBuf>,
+    /// File that names more of them, one on each line, for lists that are too long for a command line
+    #[arg(long, value_name = "FILE")]
+    targets_from: Option<PathBuf>,
     /// Landmark file of each target; {target} is its name, {folder} that of its folder, {source} that of the source
     #[arg(short, long, value_name = "PATTERN")]
     landmarks: Option<String>,
@@ -41,12 +45,16 @@ pub(crate) struct Args {
     /// this writes the tables
     #[arg(long, value_name = "K/N")]
     shard: Option<Shard>,
-    /// The targets are the frames of a motion, in order: each drape starts from the result of the one before. Landmarks
-    /// may lack from the second frame on
+    /// Drape nothing, and print the numbers of the targets that are not done yet, counted from 1: of N targets, K is
+    /// what --shard K/N drapes
+    #[arg(long, conflicts_with_all = ["shard", "sequence"])]
+    left: bool,
+    /// The targets are the frames of a motion, in order: each drape starts from the result of the one before, and holds to
+    /// the angles and areas of the first. Landmarks may lack from the second frame on
     #[arg(long, conflicts_with_all = ["shard", "jobs"])]
     sequence: bool,
-    /// Weight of an even change along the surface from frame to frame: less trembling. 50 is a good value; with 500 it lags
-    /// behind
+    /// Weight of an even change along the surface from frame to frame: less trembling, and limbs that lag behind. 50 is a
+    /// good value
     #[arg(long, value_name = "WEIGHT", requires = "sequence")]
     smooth_change: Option<f64>,
     /// Expect shapes like the results in this folder, as `transfer` does; not a folder that this batch writes to
@@ -59,23 +67,28 @@ pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
         args.settings.preset.is_none() || args.settings.config.is_none(),
         "give --preset or --config; a config file may name its preset"
     );
+    let places = places(args)?;
+    let mut files = places.iter().map(|place| &place.target);
     ensure!(
-        !args
-            .targets
-            .iter()
-            .chain([&args.source])
-            .any(|path| is_pipe(path)),
+        !is_pipe(&args.source) && !files.any(|path| is_pipe(path)),
         "a batch reads files; standard input holds one mesh only"
     );
     args.settings.preset()?;
-    for pattern in args.landmarks.iter().chain([&args.output]) {
-        check_pattern(pattern)?;
+    let pool = Pool::new(args.jobs)?;
+    if args.left {
+        let left = suite::left(&tasks(args, &places)?, &args.summary, &pool)?;
+        let lines = left.iter().map(|k| format!("{}\n", k + 1));
+        say(&lines.collect::<String>())?;
+        return Ok(ExitCode::SUCCESS);
     }
-    let (tasks, pool) = (tasks(args)?, Pool::new(args.jobs)?);
     let n_failed = match args.shard {
-        None => tell(&suite::run(&tasks, &args.summary, &pool)?, &args.summary)?,
+        None => tell(
+            &suite::run(&tasks(args, &places)?, &args.summary, &pool)?,
+            &args.summary,
+        )?,
         Some(shard) => {
-            let rows = suite::run_shard(shard, &shard.of(tasks), &args.summary, &pool)?;
+            let tasks = tasks(args, &shard.of(places))?;
+            let rows = suite::run_shard(shard, &tasks, &args.summary, &pool)?;
             tell_shard(&rows)?
         }
     };
@@ -94,67 +107,114 @@ fn tell_shard(rows: &[suite::Row]) -> anyhow::Result<usize> {
     Ok(n_failed)
 }
 
-fn tasks(args: &Args) -> anyhow::Result<Vec<Task>> {
-    let method = match (&args.settings.config, &args.settings.preset) {
-        (Some(path), _) => Method::Config(path.clone()),
-        (None, preset) => Method::Preset(preset.clone().unwrap_or_else(|| Preset::standard().name)),
-    };
-    let settings = &args.settings;
+/// A target, and the file that its result goes to.
+struct Place {
+    target: PathBuf,
+    output: PathBuf,
+}
+
+/// All targets of the batch, no two of them with one result.
+fn places(args: &Args) -> anyhow::Result<Vec<Place>> {
+    for pattern in args.landmarks.iter().chain([&args.output]) {
+        check_pattern(pattern)?;
+    }
+    let mut targets = args.targets.clone();
+    if let Some(file) = &args.targets_from {
+        targets.extend(listed(file)?);
+    }
+    let mut taken: HashMap<PathBuf, PathBuf> = HashMap::new();
+    let mut places = Vec::with_capacity(targets.len());
+    for target in targets {
+        let output = PathBuf::from(fill(&args.output, &args.source, &target));
+        if let Some(other) = taken.insert(output.clone(), target.clone()) {
+            bail!(
+                "{}: {} and {} would both be written here; use {{target}} or {{folder}} in --output",
+                output.display(),
+                other.display(),
+                target.display()
+            );
+        }
+        places.push(Place { target, output });
+    }
+    Ok(places)
+}
+
+/// The targets that a file names, one on each line.
+fn listed(file: &Path) -> anyhow::Result<Vec<PathBuf>> {
+    let text = std::fs::read_to_string(file)
+        .with_context(|| format!("{}: cannot be read", file.display()))?;
+    let lines = text.lines().filter(|line| !line.trim().is_empty());
+    let targets: Vec<PathBuf> = lines.map(PathBuf::from).collect();
+    ensure!(!targets.is_empty(), "{}: names no target", file.display());
+    Ok(targets)
+}
+
+/// The runs of these targets; the folders of their results are made.
+fn tasks(args: &Args, places: &[Place]) -> anyhow::Result<Vec<Task>> {
+    let options = options(args);
+    let mut tasks = Vec::with_capacity(places.len());
+    for place in places {
+        make_ready(args, place)?;
+        let motion = if args.sequence { &tasks[..] } else { &[] };
+        tasks.push(task(args, &options, place, motion));
+    }
+    Ok(tasks)
+}
+
+/// The options of every run.
+fn options(args: &Args) -> Vec<String> {
     let mut options = vec![
         format!("--weld={}", args.weld.weld),
         format!("--morphs={}", args.morphs.morphs),
     ];
-    options.extend(option("initial", settings.initial));
-    options.extend(option("overlap", settings.overlap));
-    options.extend(
-        args.prior
-            .iter()
-            .map(|p| format!("--prior={}", p.display())),
-    );
-    let mut tasks: Vec<Task> = Vec::new();
-    for target in &args.targets {
-        let named = |pattern: &str| PathBuf::from(fill(pattern, &args.source, target));
-        let output = named(&args.output);
-        if let Some(other) = tasks.iter().find(|task| task.output == output) {
-            anyhow::bail!(
-                "{}: {} and {} would both be written here; use {{target}} or {{folder}} in --output",
-                output.display(),
-                other.pair.target.display(),
-                target.display()
-            );
-        }
-        if let Some(folder) = output.parent() {
-            std::fs::create_dir_all(folder)
-                .with_context(|| format!("{}: the folder cannot be made", folder.display()))?;
-        }
-        check_mesh(&output)?;
-        check_not_prior(&output, args.prior.as_deref())?;
-        check_distinct(&output, &[&args.source, target])?;
-        tasks.push(Task {
-            pair: Pair {
-                name: stem(&output),
-                source: args.source.clone(),
-                target: target.clone(),
-                landmarks: args
-                    .landmarks
-                    .as_deref()
-                    .map(named)
-                    .filter(|path| !args.sequence || tasks.is_empty() || path.is_file()),
-                truth: None,
-                judge: None,
-            },
-            from: tasks
-                .last()
-                .filter(|_| args.sequence)
-                .map(|before| before.output.clone()),
-            method: method.clone(),
-            options: options_of(args, &options, tasks.is_empty()),
-            seed: settings.seed.unwrap_or(0),
-            picture: output.with_extension("png"),
-            output,
-        });
+    options.extend(option("initial", args.settings.initial));
+    options.extend(option("overlap", args.settings.overlap));
+    let prior = args.prior.iter();
+    options.extend(prior.map(|p| format!("--prior={}", p.display())));
+    options
+}
+
+/// Refuses a result that cannot be written, and makes its folder.
+fn make_ready(args: &Args, Place { target, output }: &Place) -> anyhow::Result<()> {
+    if let Some(folder) = output.parent() {
+        std::fs::create_dir_all(folder)
+            .with_context(|| format!("{}: the folder cannot be made", folder.display()))?;
     }
-    Ok(tasks)
+    check_mesh(output)?;
+    check_not_prior(output, args.prior.as_deref())?;
+    check_distinct(output, &[&args.source, target])
+}
+
+/// The run of a target, after those of the frames of its motion so far.
+fn task(args: &Args, options: &[String], place: &Place, motion: &[Task]) -> Task {
+    let Place { target, output } = place;
+    let method = match (&args.settings.config, &args.settings.preset) {
+        (Some(path), _) => Method::Config(path.clone()),
+        (None, preset) => Method::Preset(preset.clone().unwrap_or_else(|| Preset::standard().name)),
+    };
+    let landmarks = args.landmarks.as_deref();
+    let landmarks = landmarks.map(|pattern| PathBuf::from(fill(pattern, &args.source, target)));
+    let (first, before) = (motion.first(), motion.last());
+    Task {
+        pair: Pair {
+            name: stem(output),
+            source: args.source.clone(),
+            target: target.clone(),
+            // They may lack from the second frame on.
+            landmarks: landmarks.filter(|path| before.is_none() || path.is_file()),
+            truth: None,
+            judge: None,
+        },
+        frames: first.zip(before).map(|(first, before)| Frames {
+            first: first.output.clone(),
+            before: before.output.clone(),
+        }),
+        method,
+        options: options_of(args, options, before.is_none()),
+        seed: args.settings.seed.unwrap_or(0),
+        picture: output.with_extension("png"),
+        output: output.clone(),
+    }
 }
 
 /// The options of a task: those of all, and for the frames of a motion after the first how evenly they change.
@@ -225,7 +285,7 @@ mod tests {
         let matches = command.try_get_matches_from(line.split(' ')).unwrap();
         let args = <Args as clap::FromArgMatches>::from_arg_matches(&matches).unwrap();
         for option in ["--initial=paper", "--overlap=source-partial"] {
-            let tasks = tasks(&args).unwrap();
+            let tasks = tasks(&args, &places(&args).unwrap()).unwrap();
             assert!(tasks[0].options.iter().any(|o| o == option), "{option}");
         }
     }

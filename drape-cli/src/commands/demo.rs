@@ -29,6 +29,7 @@ pub(super) fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let name = |name: &str| args.output.join(name);
     let transfer = transfer::Args {
         from: None,
+        first_frame: None,
         prior: None,
         smooth_change: None,
         symmetric: false,

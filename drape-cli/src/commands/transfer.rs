@@ -7,7 +7,7 @@ use std::process::ExitCode;
 use mesh_core::io::write_atomic;
 use mesh_core::Positions;
 use mesh_draping::mesh_metrics::Report;
-use mesh_draping::{Outcome, Pair, Population, Stages, Transfer};
+use mesh_draping::{Motion, Outcome, Pair, Population, Stages, Transfer};
 use mesh_render::{Gallery, Image, Page, View, DISTANCE_AT_TOP};
 
 use crate::args::{
@@ -58,8 +58,11 @@ pub(crate) struct Args {
     /// as long
     #[arg(long, value_name = "FILE")]
     pub(super) from: Option<PathBuf>,
-    /// Weight of an even change along the surface from that shape: less trembling over the frames of a motion. 50 is a
-    /// good value; with 500 it lags behind
+    /// The result of a motion's first frame: the surface holds to its angles and areas, which lead back what slid along it
+    #[arg(long, value_name = "FILE", requires = "from")]
+    pub(super) first_frame: Option<PathBuf>,
+    /// Weight of an even change along the surface from that shape: less trembling over the frames of a motion, and limbs
+    /// that lag behind. 50 is a good value
     #[arg(long, value_name = "WEIGHT", requires = "from")]
     pub(super) smooth_change: Option<f64>,
     /// Expect a shape like the results in this folder: their mean and the modes in which they differ. The one that fits best is
@@ -114,7 +117,7 @@ pub(super) fn drape_files(args: &Args) -> anyhow::Result<Done<'_>> {
     let mut pair = stages.time("reading", || inputs.read())?;
     pair.source = pair.source.with_morphs(args.morphs.morphs.into());
     let truth = read_shape(args.truth.as_deref(), &pair)?;
-    let from = read_shape(args.from.as_deref(), &pair)?;
+    let frames = Frames::read(args, &pair)?;
     let prior = read_prior(args, &pair, &mut stages)?;
     check_bakeable(&args.bake.maps(), &pair.source, &args.target)?;
     let mut warnings = words::about_inputs(&pair);
@@ -137,7 +140,7 @@ pub(super) fn drape_files(args: &Args) -> anyhow::Result<Done<'_>> {
     if args.symmetric {
         transfer = transfer.symmetric();
     }
-    transfer = expected(transfer, (from, args.smooth_change), prior);
+    transfer = expected(transfer, frames, prior);
     let mut outcome = drape(transfer)?;
     let notes: Vec<String> = words::notes(&outcome.notes).collect();
     warn(&notes);
@@ -165,20 +168,34 @@ fn read_prior(args: &Args, pair: &Pair, stages: &mut Stages) -> anyhow::Result<O
     args.prior.as_deref().map(read).transpose()
 }
 
-/// From a shape on, which changes as evenly as is asked for; or with the shapes that the source took before.
-fn expected(
-    transfer: Transfer,
-    (from, smooth_change): (Option<Positions>, Option<f64>),
-    prior: Option<Population>,
-) -> Transfer {
-    let transfer = match smooth_change {
+/// What a motion came to so far, and how evenly it shall go on.
+struct Frames {
+    before: Option<Positions>,
+    first: Option<Positions>,
+    smooth_change: Option<f64>,
+}
+
+impl Frames {
+    fn read(args: &Args, pair: &Pair) -> anyhow::Result<Self> {
+        Ok(Self {
+            before: read_shape(args.from.as_deref(), pair)?,
+            first: read_shape(args.first_frame.as_deref(), pair)?,
+            smooth_change: args.smooth_change,
+        })
+    }
+}
+
+/// After the frames of a motion so far; or with the shapes that the source took before.
+fn expected(transfer: Transfer, frames: Frames, prior: Option<Population>) -> Transfer {
+    let transfer = match frames.smooth_change {
         Some(weight) => transfer.with_smooth_change(weight),
         None => transfer,
     };
-    match (from, prior) {
-        (Some(from), _) => transfer.with_start(from),
-        (None, Some(prior)) => transfer.with_prior(prior),
-        (None, None) => transfer,
+    match (frames.before, frames.first, prior) {
+        (Some(before), Some(first), _) => transfer.with_motion(Motion { first, before }),
+        (Some(before), None, _) => transfer.with_start(before),
+        (None, _, Some(prior)) => transfer.with_prior(prior),
+        (None, _, None) => transfer,
     }
 }
 
@@ -207,6 +224,7 @@ fn check_outputs(args: &Args) -> anyhow::Result<()> {
         args.landmarks.as_ref(),
         args.truth.as_ref(),
         args.from.as_ref(),
+        args.first_frame.as_ref(),
     ]
     .into_iter()
     .flatten()

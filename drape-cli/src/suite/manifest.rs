@@ -229,7 +229,7 @@ impl Manifest {
                 for &seed in seeds {
                     let name = pair_folder.join(format!("{}-{seed}", method.label()));
                     tasks.push(Task {
-                        from: None,
+                        frames: None,
                         pair: pair.clone(),
                         method: method.clone(),
                         options: Vec::new(),

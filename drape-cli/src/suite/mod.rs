@@ -35,8 +35,8 @@ const STORE: &str = "results.jsonl";
 pub(crate) struct Task {
     pub(crate) pair: Pair,
     pub(crate) method: Method,
-    /// The result that the run starts from: the frame before.
-    pub(crate) from: Option<PathBuf>,
+    /// The frames of the motion so far.
+    pub(crate) frames: Option<Frames>,
     /// More options of the command line.
     pub(crate) options: Vec<String>,
     pub(crate) seed: u64,
@@ -56,6 +56,13 @@ pub(crate) struct Pair {
     pub(crate) truth: Option<PathBuf>,
     /// Target to judge against in place of the one that was draped over.
     pub(crate) judge: Option<PathBuf>,
+}
+
+/// Results of a motion that the next frame follows.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Frames {
+    pub(crate) first: PathBuf,
+    pub(crate) before: PathBuf,
 }
 
 /// The settings of a run.
@@ -87,7 +94,9 @@ pub(crate) fn stem(path: &Path) -> String {
 /// Runs what is not done yet, by this program or shards of it, and writes `results.csv`, `results.json` and `index.html`
 /// beside `results.jsonl` in `folder`; gives the rows of all tasks.
 pub(crate) fn run(tasks: &[Task], folder: &Path, pool: &Pool) -> anyhow::Result<Vec<Row>> {
-    let rows = run_into(&folder.join(STORE), tasks, folder, pool)?;
+    let known = known(folder, None)?;
+    make_folder(folder)?;
+    let rows = pool.run(tasks, &known, &folder.join(STORE))?;
     write_atomic(folder.join("results.csv"), summary::csv(&rows).as_bytes())?;
     write_atomic(
         folder.join("results.json"),
@@ -107,17 +116,31 @@ pub(crate) fn run_shard(
     folder: &Path,
     pool: &Pool,
 ) -> anyhow::Result<Vec<Row>> {
-    run_into(&shard.store(folder), tasks, folder, pool)
+    let (known, store) = (known(folder, Some(shard))?, shard.store(folder));
+    make_folder(store.parent().unwrap_or(folder))?;
+    pool.run(tasks, &known, &store)
 }
 
-/// Runs what no file of rows in `folder` has; new rows go to `store`.
-fn run_into(store: &Path, tasks: &[Task], folder: &Path, pool: &Pool) -> anyhow::Result<Vec<Row>> {
-    let place = store.parent().unwrap_or(folder);
-    std::fs::create_dir_all(place)
-        .with_context(|| format!("{}: the folder cannot be made", place.display()))?;
+/// The rows of `tasks` that are not done yet, by this program or shards of it.
+pub(crate) fn left(tasks: &[Task], folder: &Path, pool: &Pool) -> anyhow::Result<Vec<usize>> {
+    let done = pool.done(tasks, &known(folder, None)?);
+    let rows = done.iter().enumerate();
+    Ok(rows
+        .filter(|(_, row)| row.is_none())
+        .map(|(k, _)| k)
+        .collect())
+}
+
+/// What the files of rows in `folder` have, as far as the shard `own` need know it.
+fn known(folder: &Path, own: Option<Shard>) -> anyhow::Result<Vec<Row>> {
     let mut known = Vec::new();
-    for rows in shard::stores(folder) {
+    for rows in shard::stores(folder, own) {
         known.extend(row::load(&rows)?);
     }
-    pool.run(tasks, &known, store)
+    Ok(known)
+}
+
+fn make_folder(folder: &Path) -> anyhow::Result<()> {
+    std::fs::create_dir_all(folder)
+        .with_context(|| format!("{}: the folder cannot be made", folder.display()))
 }

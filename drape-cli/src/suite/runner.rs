@@ -1,5 +1,6 @@
 //! Runs tasks in processes of their own, several at a time.
 
+use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
@@ -9,7 +10,7 @@ use anyhow::{anyhow, Context as _};
 use serde::Deserialize;
 
 use super::row::{append, Row};
-use super::{Method, Task, INITIAL};
+use super::{Frames, Method, Task, INITIAL};
 use crate::Program;
 
 /// How to run.
@@ -47,14 +48,11 @@ impl Pool {
         known: &[Row],
         store: &Path,
     ) -> anyhow::Result<Vec<Row>> {
-        let done: Vec<Option<Row>> = tasks
-            .iter()
-            .map(|task| self.still_right(task, known))
-            .collect();
-        let n_left = done.iter().filter(|row| row.is_none()).count();
-        eprintln!("{} runs, {} done before", tasks.len(), tasks.len() - n_left);
+        let done = self.done(tasks, known);
+        let n_done = done.iter().flatten().count();
+        eprintln!("{} runs, {n_done} done before", tasks.len());
 
-        let rows = Mutex::new(done);
+        let rows = Mutex::new((done, n_done));
         let next = AtomicUsize::new(0);
         let work = || -> anyhow::Result<()> {
             loop {
@@ -62,14 +60,15 @@ impl Pool {
                 let Some(task) = tasks.get(k) else {
                     return Ok(());
                 };
-                if lock(&rows)[k].is_some() {
+                if lock(&rows).0[k].is_some() {
                     continue;
                 }
                 let row = self.run_one(task);
-                let mut rows = lock(&rows);
+                let (rows, n_done) = &mut *lock(&rows);
                 append(store, &row)?;
+                *n_done += 1;
+                eprintln!("{}", progress(&row, *n_done, tasks.len()));
                 rows[k] = Some(row);
-                eprintln!("{}", progress(&rows, k));
             }
         };
         std::thread::scope(|scope| {
@@ -82,15 +81,24 @@ impl Pool {
         Ok(rows
             .into_inner()
             .unwrap_or_else(PoisonError::into_inner)
+            .0
             .into_iter()
             .flatten()
             .collect())
     }
 
-    /// The last row of the same command, if it succeeded, its files are there, and nothing it came from is newer.
-    fn still_right(&self, task: &Task, known: &[Row]) -> Option<Row> {
-        let command = self.arguments(task);
-        let row = known.iter().rev().find(|row| row.command == command)?;
+    /// The rows of tasks that are known and still right.
+    pub(super) fn done(&self, tasks: &[Task], known: &[Row]) -> Vec<Option<Row>> {
+        let by_command = known.iter().map(|row| (&row.command[..], row));
+        let by_command: HashMap<&[String], &Row> = by_command.collect();
+        tasks
+            .iter()
+            .map(|task| self.still_right(task, by_command.get(&self.arguments(task)[..])?))
+            .collect()
+    }
+
+    /// The last row of a task's command, if it succeeded, its files are there, and nothing it came from is newer.
+    fn still_right(&self, task: &Task, row: &Row) -> Option<Row> {
         let finished = UNIX_EPOCH + Duration::from_secs(row.finished + 1);
         let is_older = |path: &Path| {
             path.metadata()
@@ -176,8 +184,9 @@ impl Pool {
         if let Some(truth) = &task.pair.truth {
             option("--truth", text(truth));
         }
-        if let Some(from) = &task.from {
-            option("--from", text(from));
+        if let Some(Frames { first, before }) = &task.frames {
+            option("--from", text(before));
+            option("--first-frame", text(first));
         }
         match &task.method {
             _ if is_initial => (),
@@ -208,7 +217,8 @@ impl Task {
             pair.truth.as_ref(),
             pair.judge.as_ref(),
             config,
-            self.from.as_ref(),
+            self.frames.as_ref().map(|frames| &frames.first),
+            self.frames.as_ref().map(|frames| &frames.before),
         ];
         [Some(&pair.source), Some(&pair.target)]
             .into_iter()
@@ -243,12 +253,8 @@ fn text(path: &Path) -> String {
     path.to_string_lossy().into_owned()
 }
 
-/// The line about the run that has just ended.
-fn progress(rows: &[Option<Row>], k: usize) -> String {
-    let n_done = rows.iter().filter(|row| row.is_some()).count();
-    let Some(row) = &rows[k] else {
-        return String::new();
-    };
+/// The line about a run that has just ended, the `n_done`-th of `n`.
+fn progress(row: &Row, n_done: usize, n: usize) -> String {
     let result = match (&row.error, row.figure("q_transfer")) {
         (Some(error), _) => format!("failed: {error}"),
         (None, Some(q)) => format!(
@@ -258,10 +264,7 @@ fn progress(rows: &[Option<Row>], k: usize) -> String {
         (None, None) => "done".to_owned(),
     };
     format!(
-        "{n_done}/{}  {} {} seed {}: {result}",
-        rows.len(),
-        row.pair,
-        row.preset,
-        row.seed
+        "{n_done}/{n}  {} {} seed {}: {result}",
+        row.pair, row.preset, row.seed
     )
 }

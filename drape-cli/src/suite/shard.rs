@@ -42,16 +42,27 @@ impl Shard {
     }
 }
 
-/// The files of rows in a folder: of the whole list, then of shards by name.
-pub(super) fn stores(folder: &Path) -> Vec<PathBuf> {
+/// The files of rows in a folder that are worth reading: of the whole list, then of shards by name. To a shard, the others
+/// of its own cut have nothing to tell.
+pub(super) fn stores(folder: &Path, own: Option<Shard>) -> Vec<PathBuf> {
     let listed = std::fs::read_dir(folder.join(FOLDER)).into_iter().flatten();
     let files = listed.flatten().map(|entry| entry.path());
-    let is_rows = |path: &PathBuf| path.extension().is_some_and(|e| e == "jsonl");
-    let mut shards: Vec<PathBuf> = files.filter(is_rows).collect();
+    let is_told = |path: &PathBuf| match (rows_of(path), own) {
+        (None, _) => false,
+        (Some(of), Some(own)) => of.n != own.n || of.k == own.k,
+        (Some(_), None) => true,
+    };
+    let mut shards: Vec<PathBuf> = files.filter(is_told).collect();
     shards.sort();
     std::iter::once(folder.join(super::STORE))
         .chain(shards)
         .collect()
+}
+
+/// Whose rows a file has, by its name.
+fn rows_of(path: &Path) -> Option<Shard> {
+    let name = path.file_name()?.to_str()?.strip_suffix(".jsonl")?;
+    name.replacen("-of-", "/", 1).parse().ok()
 }
 
 #[cfg(test)]
@@ -73,5 +84,21 @@ mod tests {
         for wrong in ["0/4", "5/4", "3", "a/b", "1/0", ""] {
             assert!(wrong.parse::<Shard>().is_err(), "{wrong}");
         }
+    }
+
+    #[test]
+    fn a_part_does_not_read_the_others_of_its_cut() {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::create_dir(folder.path().join(FOLDER)).unwrap();
+        for (k, n) in [(1, 3), (2, 3), (3, 3), (1, 2)] {
+            std::fs::write(Shard { k, n }.store(folder.path()), "").unwrap();
+        }
+        let read = |own| {
+            let stores = stores(folder.path(), own);
+            let names = stores.iter().skip(1).map(|path| super::super::stem(path));
+            names.collect::<Vec<String>>()
+        };
+        assert_eq!(read(Some(Shard { k: 2, n: 3 })), ["1-of-2", "2-of-3"]);
+        assert_eq!(read(None), ["1-of-2", "1-of-3", "2-of-3", "3-of-3"]);
     }
 }

@@ -86,7 +86,10 @@ impl Start {
         match expected {
             Expected::Nothing => Self::choose(search, None),
             Expected::OneOf(population) => Self::choose(search, Some(population)),
-            Expected::Nearly(shape) => Self::of_shape(search, shape),
+            Expected::Nearly(shape) => Self::of_shape(search, shape, DrapeConfig::refining),
+            Expected::Next(motion) => {
+                Self::of_shape(search, &motion.before, DrapeConfig::following)
+            }
         }
     }
 
@@ -108,7 +111,11 @@ impl Start {
     }
 
     /// A shape that nearly fits, brought to the landmarks, and the end of a run from there.
-    fn of_shape(search: &Search<'_>, shape: &Positions) -> Result<Self, Error> {
+    fn of_shape(
+        search: &Search<'_>,
+        shape: &Positions,
+        end_of: impl Fn(&DrapeConfig, usize) -> DrapeConfig,
+    ) -> Result<Self, Error> {
         let preset = search.preset;
         let positions = brought(search.draped_pair(), shape)?;
         Ok(Self {
@@ -117,7 +124,7 @@ impl Start {
                 positions,
                 notes: Vec::new(),
             },
-            drape: preset.drape.refining(Draping::n_more(preset)),
+            drape: end_of(&preset.drape, Draping::n_more(preset)),
         })
     }
 

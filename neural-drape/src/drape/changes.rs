@@ -2,10 +2,11 @@
 //!
 //! Source: Mesh Draping, Interactive Mode.
 
-use mesh_core::{Landmark, Vector3, VertexData};
+use mesh_core::{Landmark, Positions, Vector3, VertexData};
 
 use super::Drape;
 use crate::input::{check_finite, check_landmarks, check_length};
+use crate::objective::StructuralLoss;
 use crate::regions::{Guidance, Regions};
 use crate::schedule::Stage;
 use crate::setting::MAX_COUNT;
@@ -39,6 +40,20 @@ impl Drape {
             .displace(&displacements.map(|d| d / scale));
         let x = self.parametrization.positions();
         self.structure.anchor(&self.triangulation, x);
+        Ok(())
+    }
+
+    /// Holds angles, areas and folds to those of `shape` from now on, in the place of the rest shape's; its place, pose and
+    /// scale do not count. What is broken in the end is still told by the rest shape.
+    ///
+    /// # Errors
+    /// Not one position per vertex; nothing changed.
+    pub fn hold_to(&mut self, shape: &Positions) -> Result<(), DrapeError> {
+        check_length("the shape to hold to", shape.len(), self.initial.len())?;
+        let anchored_at = self.structure.anchored_at().clone();
+        let (triangulation, initial) = (&self.triangulation, &self.initial);
+        self.structure = StructuralLoss::new(triangulation, shape, initial, &self.config);
+        self.structure.anchor(triangulation, &anchored_at);
         Ok(())
     }
 
