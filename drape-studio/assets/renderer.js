@@ -213,7 +213,7 @@ export class Renderer {
     gl.uniform1i(this.at.isMatcap, look === "matcap");
     const paint = look === "scan" && !isBlended ? shape.paint : null;
     if (shape.isCloud || style === "points") this.points(shape, paint);
-    else if (paint?.uvs && !(shape.values && range)) this.pictured(shape, paint);
+    else if (paint?.places && !(shape.values && range)) this.pictured(shape, paint);
     else this.surface(shape, { isBlended, range, isGrey, paint });
     this.brush(0);
     if (style === "wire" && !shape.isCloud && ink > 0) this.lines(shape, line, ink);
@@ -234,14 +234,11 @@ export class Renderer {
   // Triangles with pictures, and those without one.
   pictured(shape, paint) {
     const { gl } = this;
-    shape.spread();
-    this.attribute(0, shape.buffers.spread, 3);
-    this.attribute(1, shape.buffers.spreadNormals, 3);
-    this.attribute(2, null);
-    gl.uniform1i(this.at.mode, 0);
+    this.plain(shape);
+    gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, paint.buffers.corners ?? shape.buffers.triangles);
     gl.enable(gl.POLYGON_OFFSET_FILL);
     gl.polygonOffset(1, 1);
-    const all = (ranges) => ranges.forEach(([from, to]) => gl.drawArrays(gl.TRIANGLES, 3 * from, 3 * (to - from)));
+    const all = (ranges) => ranges.forEach(([from, to]) => gl.drawElements(gl.TRIANGLES, 3 * (to - from), gl.UNSIGNED_INT, 12 * from));
     this.brush(0);
     all(paint.bare);
     this.brush(2, paint);

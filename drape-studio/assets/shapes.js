@@ -44,6 +44,15 @@ const extent = (positions) => {
   return [low, high];
 };
 
+// Rows of three numbers, and some of them again.
+const withCopies = (rows, copies) => {
+  if (copies.length === 0) return rows;
+  const all = new Float32Array(rows.length + 3 * copies.length);
+  all.set(rows);
+  copies.forEach((v, k) => all.set(rows.subarray(3 * v, 3 * v + 3), rows.length + 3 * k));
+  return all;
+};
+
 const BUFFERS = ["positions", "normals", "values", "triangles", "edges", "spread", "spreadNormals"];
 
 export class Shape {
@@ -86,9 +95,20 @@ export class Shape {
   move(positions) {
     this.positions = positions;
     if (!this.givenNormals) vertexNormals(positions, this.triangles, this.normals);
-    this.fill("positions", positions);
-    this.fill("normals", this.normals);
+    this.fillVertices();
     this.isSpread = false;
+  }
+
+  // Vertices on the seams of a picture are there several times.
+  wear(paint) {
+    this.paint = paint;
+    if (paint?.copies.length > 0) this.fillVertices();
+  }
+
+  fillVertices() {
+    const copies = this.paint?.copies ?? [];
+    this.fill("positions", withCopies(this.positions, copies));
+    this.fill("normals", withCopies(this.normals, copies));
   }
 
   // Values to colour by: one per vertex, or one per triangle; none for the plain colour.
@@ -99,7 +119,7 @@ export class Shape {
     this.fill("values", perTriangle ? Float32Array.from({ length }, (_, k) => values[Math.floor(k / 3)]) : values);
   }
 
-  // Where every triangle has a colour or a place on a picture of its own, it has corners of its own.
+  // Where every triangle has a colour of its own, it has corners of its own.
   spread() {
     if (this.isSpread) return;
     const n = this.triangles.length;
