@@ -1,5 +1,7 @@
 // What a scan was painted with: colours of its vertices, or pictures on its triangles.
 
+import { coarsen } from "./detail.js";
+
 const NONE = new Uint32Array(0);
 // The lowest row comes first, as coordinates on pictures have it; colours are taken as they are.
 const PLAIN = { imageOrientation: "flipY", premultiplyAlpha: "none", colorSpaceConversion: "none" };
@@ -46,7 +48,7 @@ export class Paint {
   }
 
   upload(gl) {
-    this.gl = gl;
+    [this.gl, this.fewer] = [gl, null];
     const { uvs, corners } = this.places ?? {};
     this.buffers = { colors: this.buffer(gl.ARRAY_BUFFER, this.colors), uvs: this.buffer(gl.ARRAY_BUFFER, uvs), corners: this.buffer(gl.ELEMENT_ARRAY_BUFFER, corners) };
     this.pictures.forEach((picture) => (picture.texture = this.texture(picture.bitmap)));
@@ -59,6 +61,15 @@ export class Paint {
     gl.bindBuffer(kind, buffer);
     gl.bufferData(kind, data, gl.STATIC_DRAW);
     return buffer;
+  }
+
+  // Fewer triangles of the shape that was painted first, which has the same corners as all that share this.
+  coarse(shape) {
+    if (!this.fewer) {
+      this.fewer = coarsen(shape, this.places);
+      this.buffers.coarse = this.fewer.buffer = this.buffer(this.gl.ELEMENT_ARRAY_BUFFER, this.fewer.corners);
+    }
+    return this.fewer;
   }
 
   texture(bitmap) {

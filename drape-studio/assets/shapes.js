@@ -1,5 +1,7 @@
 // Shapes on the graphics card.
 
+import { coarsen } from "./detail.js";
+
 // Sums of the area vectors of the triangles around each vertex.
 const vertexNormals = (positions, triangles, out) => {
   out.fill(0);
@@ -72,8 +74,8 @@ export class Shape {
   upload(gl) {
     this.gl = gl;
     this.buffers = Object.fromEntries(BUFFERS.map((name) => [name, gl.createBuffer()]));
+    [this.fewer, this.hasEdges] = [null, false];
     this.index("triangles", this.triangles);
-    this.index("edges", this.edges);
     this.move(this.positions);
     this.colour(this.values, this.perTriangle);
   }
@@ -83,6 +85,22 @@ export class Shape {
     gl.bindVertexArray(null);
     gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, this.buffers[name]);
     gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, rows, gl.STATIC_DRAW);
+  }
+
+  // Edges are brought when they are first seen: of a large scan they never are.
+  indexEdges() {
+    this.index("edges", this.edges);
+    this.hasEdges = true;
+  }
+
+  // Fewer triangles, made when they are first needed.
+  coarse() {
+    if (!this.fewer) {
+      this.fewer = coarsen(this);
+      this.buffers.coarse = this.fewer.buffer = this.gl.createBuffer();
+      this.index("coarse", this.fewer.corners);
+    }
+    return this.fewer;
   }
 
   fill(name, data) {

@@ -9,7 +9,7 @@ const CLICK = 5;
 
 class View {
   constructor(app, name) {
-    Object.assign(this, { app, name, camera: new Camera(), shape: null, isStale: true, isUnprobed: false });
+    Object.assign(this, { app, name, camera: new Camera(), shape: null, isStale: true, isUnprobed: false, isResting: false, isCoarse: false });
     this.element = document.getElementById(`view-${name}`);
     this.element.innerHTML = '<div class="name"><b></b><span></span></div><div class="badge" hidden></div><div class="empty" hidden></div><div class="markers"></div><div class="busy" role="status"></div><button class="large">⤢</button>';
     [this.title, this.about] = this.element.querySelectorAll(".name b, .name span");
