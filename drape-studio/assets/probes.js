@@ -2,6 +2,8 @@
 
 // A probe is this much nearer to the eye than its point, in longest sides, so that its own surface does not hide it.
 const NEARER = 0.004;
+// Where fewer triangles were drawn, these may lie so much outside.
+const COARSE = 0.012;
 const PIXELS = 4;
 
 export class Probes {
@@ -14,14 +16,16 @@ export class Probes {
   }
 
   // Asks for points by their numbers; the view must be aimed at.
-  ask(points, eye) {
+  ask(points, eye, isCoarse) {
     const { gl } = this.renderer;
     this.asked.forEach((query) => this.free.push(query));
     this.asked.clear();
+    // What is no longer there is not hidden.
+    for (const id of this.hidden) if (!points.has(id)) this.hidden.delete(id);
     if (points.size === 0) return;
     const nearer = [...points.values()].flatMap((p) => {
       const way = eye.map((c, k) => c - p[k]);
-      const share = Math.min(0.5, NEARER / Math.max(1e-9, Math.hypot(...way)));
+      const share = Math.min(0.5, (isCoarse ? COARSE : NEARER) / Math.max(1e-9, Math.hypot(...way)));
       return p.map((c, k) => c + share * way[k]);
     });
     gl.bindBuffer(gl.ARRAY_BUFFER, this.buffer);

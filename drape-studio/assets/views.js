@@ -160,10 +160,10 @@ class View {
     return landmark.source && landmark.source.vertices.every((v) => 3 * v < this.shape.positions.length) ? this.shape.place(landmark.source) : null;
   }
 
-  // Asks which landmarks are hidden by what was drawn.
+  // Asks which landmarks and points of curves are hidden by what was drawn.
   probe(landmarks) {
     const places = landmarks.map((l) => [l.id, this.place(l)?.point]).filter(([, point]) => point);
-    this.probes.ask(new Map(places), this.camera.eye);
+    this.probes.ask(new Map([...places, ...this.app.curves.probed(this)]), this.camera.eye, this.isCoarse);
   }
 
   // Another graphics card, or the same one without what it had.

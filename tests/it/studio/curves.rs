@@ -233,7 +233,7 @@ fn a_curve_is_drawn_with_the_pointer() {
     assert_eq!(page.value("studio.state.landmarks.length"), json!(6));
     probed(&page);
     for side in ["source", "target", "result"] {
-        let line = format!("document.querySelector('#view-{side} .curves .line').getAttribute('points').split(' ').length");
+        let line = format!("document.querySelector('#view-{side} .curves .line').getAttribute('d').split('L').length");
         assert!(
             page.value(&line).as_u64() > Some(8),
             "no line on the {side}"
