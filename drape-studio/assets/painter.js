@@ -21,6 +21,10 @@ const ink = ({ camera, shape, box }) => {
 
 // What lies behind points is hidden where these are nearer to each other than this many mean distances.
 const CLOSED = 2.5;
+// How far before a surface its own marks are sought, in longest sides; and where fewer triangles are drawn, some of
+// which lie so much outside.
+const BEFORE = 0.004;
+const BEFORE_FEWER = 0.012;
 
 export class Painter {
   constructor(app, canvas) {
@@ -133,9 +137,13 @@ export class Painter {
   // Asks which landmarks of a view are hidden by its shape, as it was last drawn.
   probe(view, landmarks) {
     this.aim(view);
+    let before = view.isCoarse ? BEFORE_FEWER : BEFORE;
     if (view.shape && (view.shape.isCloud || this.app.preferences.style === "points")) {
-      this.renderer.close(view.shape, CLOSED * view.camera.pixels(view.shape.meanEdge, view.box.width, view.box.height));
+      const reach = CLOSED * view.shape.meanEdge;
+      this.renderer.close(view.shape, view.camera.pixels(reach, view.box.width, view.box.height));
+      // What closes the gap beside a point of a slope lies before it.
+      before = Math.max(before, reach / 2);
     }
-    view.probe(landmarks);
+    view.probe(landmarks, before);
   }
 }

@@ -161,9 +161,9 @@ class View {
   }
 
   // Asks which landmarks and points of curves are hidden by what was drawn.
-  probe(landmarks) {
+  probe(landmarks, nearer) {
     const places = landmarks.map((l) => [l.id, this.place(l)?.point]).filter(([, point]) => point);
-    this.probes.ask(new Map([...places, ...this.app.curves.probed(this)]), this.camera.eye, this.isCoarse);
+    this.probes.ask(new Map([...places, ...this.app.curves.probed(this)]), this.camera.eye, nearer);
   }
 
   // Another graphics card, or the same one without what it had.

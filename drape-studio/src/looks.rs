@@ -56,7 +56,9 @@ impl DisplayedLooks {
         Self {
             colors: colors.map(|colors| color_bytes(colors, rows)),
             places: uvs.map(|uvs| {
-                let places = triangles.iter().map(|t| (t.vertices, places(uvs, faces, t)));
+                let places = triangles
+                    .iter()
+                    .map(|t| (t.vertices, places(uvs, faces, t)));
                 DrawnPlaces::new(&Seams::new(n_vertices, places))
             }),
             pictures: looks
