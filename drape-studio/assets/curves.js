@@ -11,6 +11,8 @@ const DRAWN = "#e0457b";
 const LAYERS = ["casing", "line", "behind"];
 // Of a line at most this many points are probed.
 const MOST_PROBED = 48;
+// A line of few places runs straight between them: so far below the surface, in longest sides, it is still on it.
+const BELOW = 0.025;
 
 export const curveLabel = ({ name, number }) => name || (number === null ? "curve that waits" : `curve ${number}`);
 // The shape on which a curve has no line yet; none where it has both.
@@ -177,11 +179,11 @@ export class Curves {
   }
 
   // What has to be known of a view: points by their keys, of long lines not each.
-  probed(view) {
+  probed(view, nearer) {
     return this.lines.flatMap((line) => {
       const points = this.points(view, line);
       const every = stride(points);
-      return points.map((point, k) => [`${line.key} ${k}`, point]).filter((_, k) => k % every === 0);
+      return points.map((point, k) => [`${line.key} ${k}`, { point, nearer: Math.max(nearer, BELOW) }]).filter((_, k) => k % every === 0);
     });
   }
 }

@@ -11,16 +11,16 @@ export class Probes {
     this.hidden = new Set();
   }
 
-  // Asks for points by their keys; the view must be aimed at. A probe is so much nearer to the eye than its point, in
-  // longest sides, that its own surface does not hide it.
-  ask(points, eye, nearer) {
+  // Asks for points by their keys; the view must be aimed at. Each is sought so much nearer to the eye, in longest sides,
+  // that its own surface does not hide it.
+  ask(points, eye) {
     const { gl } = this.renderer;
     this.asked.forEach((query) => this.free.push(query));
     this.asked.clear();
     // What is no longer there is not hidden.
     for (const id of this.hidden) if (!points.has(id)) this.hidden.delete(id);
     if (points.size === 0) return;
-    const places = [...points.values()].flatMap((p) => {
+    const places = [...points.values()].flatMap(({ point: p, nearer }) => {
       const way = eye.map((c, k) => c - p[k]);
       const share = Math.min(0.5, nearer / Math.max(1e-9, Math.hypot(...way)));
       return p.map((c, k) => c + share * way[k]);

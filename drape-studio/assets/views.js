@@ -162,8 +162,8 @@ class View {
 
   // Asks which landmarks and points of curves are hidden by what was drawn.
   probe(landmarks, nearer) {
-    const places = landmarks.map((l) => [l.id, this.place(l)?.point]).filter(([, point]) => point);
-    this.probes.ask(new Map([...places, ...this.app.curves.probed(this)]), this.camera.eye, nearer);
+    const places = landmarks.map((l) => [l.id, { point: this.place(l)?.point, nearer }]).filter(([, { point }]) => point);
+    this.probes.ask(new Map([...places, ...this.app.curves.probed(this, nearer)]), this.camera.eye);
   }
 
   // Another graphics card, or the same one without what it had.
