@@ -271,9 +271,15 @@ fn a_line_behind_the_shape_is_faint() {
     for target in ["target.ply", "cloud.ply"] {
         let server = Server::start(&folder.path(""), &["source.obj", target, "--fresh"]);
         let mut wire = Wire::own(&server);
-        let line = [[-0.2, 0.1], [0.0, 0.12], [0.2, 0.1]];
-        along(&mut wire, "source", &line);
-        along(&mut wire, "target", &line);
+        for (shape, x) in ["source", "target"]
+            .into_iter()
+            .flat_map(|shape| [-0.2, 0.0, 0.2].map(|x| (shape, x)))
+        {
+            // Beside the points of a cloud.
+            let mut near = place(shape, [x, 0.1]);
+            near["edit"]["ray"]["spread"] = json!(0.02);
+            assert!(wire.ask(near)["value"].is_array());
+        }
         ask(&mut wire, json!({ "do": "end_curve" }));
         let page = Page::open(&browser, &server.url, [1280, 800]);
         page.wait("studio.views.source.shape && studio.views.target.shape && studio.state.curves.length === 1");
