@@ -133,10 +133,11 @@ fn while_draped(page: &Page, checks: &dyn Fn(&str)) {
 
 /// Targets that wait, and marks that wait for their places.
 fn next_scans(page: &Page, place: &Workplace, checks: &dyn Fn(&str)) {
-    let mut soup = mesh_core::io::read_soup(place.path("target.ply")).unwrap();
+    let mut soup =
+        mesh_core::io::read_soup(place.path("target.ply")).expect("the workplace has a target");
     let names = ["second.ply", "third.ply"].map(|name| {
         soup.positions.iter_mut().for_each(|p| p.y *= 1.01);
-        mesh_core::io::write_soup(place.path(name), &soup).unwrap();
+        mesh_core::io::write_soup(place.path(name), &soup).expect("a target is written");
         place.path(name)
     });
     page.drop_files(middle(page, "target"), &names);

@@ -156,7 +156,8 @@ fn seamed_sheet(place: &Workplace) {
     place.write("sheet.obj", &text);
     place.write("seam.mtl", "newmtl skin\nmap_Kd seam.bmp\n");
     let (red, green) = ([220, 20, 20], [20, 200, 20]);
-    fs::write(place.path("seam.bmp"), striped([red, red, green, green])).unwrap();
+    fs::write(place.path("seam.bmp"), striped([red, red, green, green]))
+        .expect("a picture is written");
 }
 
 #[test]
