@@ -7,6 +7,12 @@ const $ = (id) => document.getElementById(id);
 const SVG = "http://www.w3.org/2000/svg";
 // Of the curve that is drawn, which has no number yet.
 const DRAWN = "#e0457b";
+// A line is a pale one below, so that it is seen on any colour, the line itself, and what of it is behind the shape.
+const LAYERS = ["casing", "line", "behind"];
+// Of a line at most this many points are probed.
+const MOST_PROBED = 48;
+// A line of few places runs straight between them: so far below the surface, in longest sides, it is still on it.
+const BELOW = 0.025;
 
 export const curveLabel = ({ name, number }) => name || (number === null ? "curve that waits" : `curve ${number}`);
 // The shape on which a curve has no line yet; none where it has both.
@@ -128,34 +134,73 @@ export class Curves {
     return row;
   }
 
-  // The lines of a view, as its camera has them.
-  draw(view) {
+  // The lines that are shown, each with a key of its own.
+  get lines() {
     const { curves = [], drawing } = this.app.state ?? {};
     const others = curves.filter((curve) => curve.id !== drawing?.of);
-    const lines = others.map((curve) => ({ ...curve, colour: markColour(curve.id) }));
+    const lines = others.map((curve) => ({ ...curve, key: curve.id, colour: markColour(curve.id), how: "" }));
     // With the mirror image that it will have.
-    if (drawing?.twin) lines.push({ ...drawing.twin, colour: DRAWN, how: "is-drawn is-twin" });
-    if (drawing) lines.push({ ...drawing, colour: DRAWN, how: "is-drawn" });
-    while (view.lines.children.length > 2 * lines.length) view.lines.lastChild.remove();
-    while (view.lines.children.length < 2 * lines.length) view.lines.append(document.createElementNS(SVG, "polyline"));
+    if (drawing?.twin) lines.push({ ...drawing.twin, key: "twin", colour: DRAWN, how: "is-drawn is-twin" });
+    if (drawing) lines.push({ ...drawing, key: "drawn", colour: DRAWN, how: "is-drawn" });
+    return lines;
+  }
+
+  // The lines of a view, as its camera has them: what is behind the shape is faint.
+  draw(view) {
+    const { lines } = this;
+    while (view.lines.children.length > LAYERS.length * lines.length) view.lines.lastChild.remove();
+    while (view.lines.children.length < LAYERS.length * lines.length) view.lines.append(document.createElementNS(SVG, "path"));
     const project = lines.length > 0 && view.projection();
-    lines.forEach((line, k) => {
-      const points = this.points(view, line, project);
-      // A pale line below, so that it is seen on any colour.
-      [["casing", ""], ["line", line.colour]].forEach(([name, stroke], layer) => {
-        const element = view.lines.children[2 * k + layer];
-        element.setAttribute("class", `${name} ${line.how ?? ""}`);
-        element.setAttribute("points", points);
-        element.style.stroke = stroke;
+    lines.forEach((line, row) => {
+      const [before, behind] = ways(this.seen(view, line, project));
+      LAYERS.forEach((layer, k) => {
+        const element = view.lines.children[LAYERS.length * row + k];
+        element.setAttribute("class", `${layer} ${line.how}`);
+        element.setAttribute("d", layer === "behind" ? behind : before);
+        element.style.stroke = layer === "casing" ? "" : line.colour;
       });
     });
   }
 
-  points(view, line, project) {
+  // The points of a line in the frame of a view.
+  points(view, line) {
     const isTarget = view.name === "target";
     const places = isTarget ? line.target.map((point) => ({ target: { point } })) : line.source.map((source) => ({ source }));
     if (line.is_closed && places.length > 0) places.push(places[0]);
-    const seen = places.map((place) => view.place(place)?.point).filter(Boolean).map(project).filter(Boolean);
-    return seen.map(({ x, y }) => `${x.toFixed(1)},${y.toFixed(1)}`).join(" ");
+    return places.map((place) => view.place(place)?.point).filter(Boolean);
+  }
+
+  // Where they are on the page, and whether something is before them.
+  seen(view, line, project) {
+    const points = this.points(view, line);
+    const every = stride(points);
+    const places = points.map((point, k) => ({ at: project(point), isBehind: view.probes.hidden.has(`${line.key} ${k - (k % every)}`) }));
+    return places.filter(({ at }) => at);
+  }
+
+  // What has to be known of a view: points by their keys, of long lines not each.
+  probed(view, nearer) {
+    return this.lines.flatMap((line) => {
+      const points = this.points(view, line);
+      const every = stride(points);
+      return points.map((point, k) => [`${line.key} ${k}`, { point, nearer: Math.max(nearer, BELOW) }]).filter((_, k) => k % every === 0);
+    });
   }
 }
+
+const stride = (points) => Math.ceil(points.length / MOST_PROBED);
+
+// The ways through the points that are seen and through those that are not: what ends behind something is behind it.
+const ways = (places) => {
+  const told = ({ at: { x, y } }) => `${x.toFixed(1)} ${y.toFixed(1)}`;
+  const [out, last] = [["", ""], { kind: -1 }];
+  // A single place is a dot.
+  if (places.length === 1) places.push(places[0]);
+  for (let k = 1; k < places.length; k++) {
+    const [from, to] = [places[k - 1], places[k]];
+    const kind = Number(from.isBehind || to.isBehind);
+    out[kind] += `${kind === last.kind ? "" : `M${told(from)}`}L${told(to)}`;
+    last.kind = kind;
+  }
+  return out;
+};

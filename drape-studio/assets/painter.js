@@ -1,5 +1,6 @@
 // Draws what is stale: the views, then the markers over them.
 
+import { Detail } from "./detail.js";
 import { Renderer } from "./renderer.js";
 
 const $ = (id) => document.getElementById(id);
@@ -20,6 +21,10 @@ const ink = ({ camera, shape, box }) => {
 
 // What lies behind points is hidden where these are nearer to each other than this many mean distances.
 const CLOSED = 2.5;
+// How far before a surface its own marks are sought, in longest sides; and where fewer triangles are drawn, some of
+// which lie so much outside.
+const BEFORE = 0.004;
+const BEFORE_FEWER = 0.012;
 
 export class Painter {
   constructor(app, canvas) {
@@ -27,6 +32,7 @@ export class Painter {
     this.canvas = canvas;
     this.renderer = new Renderer(canvas);
     this.isWaiting = false;
+    this.detail = new Detail(this);
     // The system takes a graphics card away when it sleeps, or when a driver is renewed.
     canvas.addEventListener("webglcontextlost", (event) => event.preventDefault());
     canvas.addEventListener("webglcontextrestored", () => this.restore());
@@ -43,7 +49,7 @@ export class Painter {
   // These views are to be drawn again; all where none is named.
   invalidate(...views) {
     const stale = views.length > 0 ? views : (this.app.views?.list ?? []);
-    stale.forEach((view) => (view.isStale = true));
+    stale.forEach((view) => ([view.isStale, view.isResting] = [true, false]));
     this.refresh();
   }
 
@@ -75,6 +81,7 @@ export class Painter {
     const isResized = renderer.begin(app.views.size);
     const { landmarks } = app;
     app.loupe?.draw(this);
+    const drawn = app.views.list.filter((view) => view.box.width > 1 && (view.isStale || isResized));
     for (const view of app.views.list) {
       if (view.box.width <= 1) continue;
       if (view.isStale || isResized) this.drawView(view, landmarks);
@@ -84,6 +91,7 @@ export class Painter {
       view.markers.show(landmarks, app.chosen);
       app.curves.draw(view);
     }
+    this.detail.drawn(drawn);
     app.panels.showMisses(app.stage.misses(landmarks), app.chosen);
   }
 
@@ -98,10 +106,11 @@ export class Painter {
     const { style, look } = app.preferences;
     const colours = COLOURS[app.theme];
     renderer.clear(colours.back);
+    view.isCoarse = Boolean(view.shape) && this.detail.isCoarse(view);
     if (!view.shape) return null;
     const isResult = view.name === "result";
     const range = isResult ? app.legend.range : [0, 1];
-    const how = { style, look, colour: colours[view.name], line: colours.line, ink: ink(view) };
+    const how = { style, look, colour: colours[view.name], line: colours.line, ink: ink(view), isCoarse: view.isCoarse };
     renderer.draw(view.shape, { ...how, range, isGrey: isResult });
     return { colours, isResult, range, how };
   }
@@ -116,7 +125,7 @@ export class Painter {
     const ranges = view.name === "source" ? app.parts.pointedRanges : [];
     if (ranges.length > 0 && view.shape.values) renderer.through(view.shape, ranges, range);
     if (isResult && this.overlay > 0 && app.views.target.shape) {
-      renderer.draw(app.views.target.shape, { style: "shaded", colour: colours.target, alpha: this.overlay });
+      renderer.draw(app.views.target.shape, { style: "shaded", colour: colours.target, alpha: this.overlay, isCoarse: view.isCoarse || this.detail.isCoarse({ ...app.views.target, isResting: view.isResting }) });
     }
     if (isResult && app.strip.share > 0) {
       renderer.cut(app.strip.share);
@@ -128,9 +137,13 @@ export class Painter {
   // Asks which landmarks of a view are hidden by its shape, as it was last drawn.
   probe(view, landmarks) {
     this.aim(view);
+    let before = view.isCoarse ? BEFORE_FEWER : BEFORE;
     if (view.shape && (view.shape.isCloud || this.app.preferences.style === "points")) {
-      this.renderer.close(view.shape, CLOSED * view.camera.pixels(view.shape.meanEdge, view.box.width, view.box.height));
+      const reach = CLOSED * view.shape.meanEdge;
+      this.renderer.close(view.shape, view.camera.pixels(reach, view.box.width, view.box.height));
+      // What closes the gap beside a point of a slope lies before it.
+      before = Math.max(before, reach / 2);
     }
-    view.probe(landmarks);
+    view.probe(landmarks, before);
   }
 }

@@ -1,7 +1,5 @@
 // Which points of a view are hidden by what was drawn there: the graphics card counts what it would draw of each.
 
-// A probe is this much nearer to the eye than its point, in longest sides, so that its own surface does not hide it.
-const NEARER = 0.004;
 const PIXELS = 4;
 
 export class Probes {
@@ -13,19 +11,22 @@ export class Probes {
     this.hidden = new Set();
   }
 
-  // Asks for points by their numbers; the view must be aimed at.
+  // Asks for points by their keys; the view must be aimed at. Each is sought so much nearer to the eye, in longest sides,
+  // that its own surface does not hide it.
   ask(points, eye) {
     const { gl } = this.renderer;
     this.asked.forEach((query) => this.free.push(query));
     this.asked.clear();
+    // What is no longer there is not hidden.
+    for (const id of this.hidden) if (!points.has(id)) this.hidden.delete(id);
     if (points.size === 0) return;
-    const nearer = [...points.values()].flatMap((p) => {
+    const places = [...points.values()].flatMap(({ point: p, nearer }) => {
       const way = eye.map((c, k) => c - p[k]);
-      const share = Math.min(0.5, NEARER / Math.max(1e-9, Math.hypot(...way)));
+      const share = Math.min(0.5, nearer / Math.max(1e-9, Math.hypot(...way)));
       return p.map((c, k) => c + share * way[k]);
     });
     gl.bindBuffer(gl.ARRAY_BUFFER, this.buffer);
-    gl.bufferData(gl.ARRAY_BUFFER, new Float32Array(nearer), gl.STREAM_DRAW);
+    gl.bufferData(gl.ARRAY_BUFFER, new Float32Array(places), gl.STREAM_DRAW);
     this.renderer.probe(this.buffer, PIXELS, () => {
       [...points.keys()].forEach((id, k) => {
         const query = this.free.pop() ?? gl.createQuery();

@@ -1,5 +1,6 @@
 // Draws shapes into parts of one canvas.
 
+import { within } from "./detail.js";
 import { RAMP } from "./heats.js";
 
 const VERTEX = `#version 300 es
@@ -200,8 +201,8 @@ export class Renderer {
     this.gl.uniform4f(this.at.colour, r, g, b, alpha);
   }
 
-  // style: shaded, wire (shaded with edges), points; `ink` is how strong the edges are.
-  draw(shape, { style, look = "clay", colour, line, ink = 0, alpha = 1, range = null, isGrey = false }) {
+  // style: shaded, wire (shaded with edges), points; `ink` is how strong the edges are; coarse: with fewer triangles.
+  draw(shape, { style, look = "clay", colour, line, ink = 0, alpha = 1, range = null, isGrey = false, isCoarse = false }) {
     const { gl } = this;
     if (alpha <= 0) return;
     const isBlended = alpha < 1;
@@ -213,8 +214,8 @@ export class Renderer {
     gl.uniform1i(this.at.isMatcap, look === "matcap");
     const paint = look === "scan" && !isBlended ? shape.paint : null;
     if (shape.isCloud || style === "points") this.points(shape, paint);
-    else if (paint?.uvs && !(shape.values && range)) this.pictured(shape, paint);
-    else this.surface(shape, { isBlended, range, isGrey, paint });
+    else if (paint?.places && !(shape.values && range)) this.pictured(shape, paint, isCoarse);
+    else this.surface(shape, { isBlended, range, isGrey, paint, isCoarse });
     this.brush(0);
     if (style === "wire" && !shape.isCloud && ink > 0) this.lines(shape, line, ink);
     gl.disable(gl.BLEND);
@@ -232,16 +233,15 @@ export class Renderer {
   }
 
   // Triangles with pictures, and those without one.
-  pictured(shape, paint) {
+  pictured(shape, paint, isCoarse) {
     const { gl } = this;
-    shape.spread();
-    this.attribute(0, shape.buffers.spread, 3);
-    this.attribute(1, shape.buffers.spreadNormals, 3);
-    this.attribute(2, null);
-    gl.uniform1i(this.at.mode, 0);
+    this.plain(shape);
+    const coarse = isCoarse ? paint.coarse(shape) : null;
+    gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, coarse?.buffer ?? paint.buffers.corners ?? shape.buffers.triangles);
     gl.enable(gl.POLYGON_OFFSET_FILL);
     gl.polygonOffset(1, 1);
-    const all = (ranges) => ranges.forEach(([from, to]) => gl.drawArrays(gl.TRIANGLES, 3 * from, 3 * (to - from)));
+    const kept = (range) => (coarse ? within(coarse.rows, range) : range);
+    const all = (ranges) => ranges.map(kept).forEach(([from, to]) => gl.drawElements(gl.TRIANGLES, 3 * (to - from), gl.UNSIGNED_INT, 12 * from));
     this.brush(0);
     all(paint.bare);
     this.brush(2, paint);
@@ -259,17 +259,18 @@ export class Renderer {
     gl.scissor(x, y, Math.round(width * share), height);
   }
 
-  surface(shape, { isBlended, range, isGrey, paint }) {
+  surface(shape, { isBlended, range, isGrey, paint, isCoarse }) {
     const { gl } = this;
     this.brush(paint?.colors && !(shape.values && range) ? 1 : 0, paint);
     const isHeat = shape.values && range;
     const isSpread = isHeat && shape.perTriangle;
     if (isHeat) this.heat(shape, range, isGrey);
     else this.plain(shape);
-    gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, shape.buffers.triangles);
+    const coarse = isCoarse && !isSpread ? shape.coarse() : null;
+    gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, coarse?.buffer ?? shape.buffers.triangles);
     gl.enable(gl.POLYGON_OFFSET_FILL);
     gl.polygonOffset(1, 1);
-    const n = shape.triangles.length;
+    const n = (coarse?.corners ?? shape.triangles).length;
     const draw = () => (isSpread ? gl.drawArrays(gl.TRIANGLES, 0, n) : gl.drawElements(gl.TRIANGLES, n, gl.UNSIGNED_INT, 0));
     if (isBlended) {
       // Only the nearest layer is seen through.
@@ -309,6 +310,7 @@ export class Renderer {
     this.attribute(2, null);
     this.colour(line, alpha);
     gl.uniform1i(at.mode, 1);
+    if (!shape.hasEdges) shape.indexEdges();
     gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, shape.buffers.edges);
     gl.drawElements(gl.LINES, shape.edges.length, gl.UNSIGNED_INT, 0);
   }

@@ -1,5 +1,7 @@
 // Shapes on the graphics card.
 
+import { coarsen } from "./detail.js";
+
 // Sums of the area vectors of the triangles around each vertex.
 const vertexNormals = (positions, triangles, out) => {
   out.fill(0);
@@ -44,6 +46,15 @@ const extent = (positions) => {
   return [low, high];
 };
 
+// Rows of three numbers, and some of them again.
+const withCopies = (rows, copies) => {
+  if (copies.length === 0) return rows;
+  const all = new Float32Array(rows.length + 3 * copies.length);
+  all.set(rows);
+  copies.forEach((v, k) => all.set(rows.subarray(3 * v, 3 * v + 3), rows.length + 3 * k));
+  return all;
+};
+
 const BUFFERS = ["positions", "normals", "values", "triangles", "edges", "spread", "spreadNormals"];
 
 export class Shape {
@@ -63,8 +74,8 @@ export class Shape {
   upload(gl) {
     this.gl = gl;
     this.buffers = Object.fromEntries(BUFFERS.map((name) => [name, gl.createBuffer()]));
+    [this.fewer, this.hasEdges] = [null, false];
     this.index("triangles", this.triangles);
-    this.index("edges", this.edges);
     this.move(this.positions);
     this.colour(this.values, this.perTriangle);
   }
@@ -74,6 +85,22 @@ export class Shape {
     gl.bindVertexArray(null);
     gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, this.buffers[name]);
     gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, rows, gl.STATIC_DRAW);
+  }
+
+  // Edges are brought when they are first seen: of a large scan they never are.
+  indexEdges() {
+    this.index("edges", this.edges);
+    this.hasEdges = true;
+  }
+
+  // Fewer triangles, made when they are first needed.
+  coarse() {
+    if (!this.fewer) {
+      this.fewer = coarsen(this);
+      this.buffers.coarse = this.fewer.buffer = this.gl.createBuffer();
+      this.index("coarse", this.fewer.corners);
+    }
+    return this.fewer;
   }
 
   fill(name, data) {
@@ -86,9 +113,20 @@ export class Shape {
   move(positions) {
     this.positions = positions;
     if (!this.givenNormals) vertexNormals(positions, this.triangles, this.normals);
-    this.fill("positions", positions);
-    this.fill("normals", this.normals);
+    this.fillVertices();
     this.isSpread = false;
+  }
+
+  // Vertices on the seams of a picture are there several times.
+  wear(paint) {
+    this.paint = paint;
+    if (paint?.copies.length > 0) this.fillVertices();
+  }
+
+  fillVertices() {
+    const copies = this.paint?.copies ?? [];
+    this.fill("positions", withCopies(this.positions, copies));
+    this.fill("normals", withCopies(this.normals, copies));
   }
 
   // Values to colour by: one per vertex, or one per triangle; none for the plain colour.
@@ -99,7 +137,7 @@ export class Shape {
     this.fill("values", perTriangle ? Float32Array.from({ length }, (_, k) => values[Math.floor(k / 3)]) : values);
   }
 
-  // Where every triangle has a colour or a place on a picture of its own, it has corners of its own.
+  // Where every triangle has a colour of its own, it has corners of its own.
   spread() {
     if (this.isSpread) return;
     const n = this.triangles.length;

@@ -34,12 +34,11 @@ export class Stage {
     view.wait(hash ? "Loading…" : "");
     if (!hash) return;
     try {
-      const buffers = await fetchShape(name, hash);
+      const [buffers, paint] = await Promise.all([fetchShape(name, hash), fetchPaint(name, hash, about.looks)]);
       if (this.hashes[name] !== hash) return;
-      view.shape = new Shape(app.painter.renderer.gl, buffers);
-      const paint = await fetchPaint(name, hash, about.looks);
-      if (this.hashes[name] !== hash) return;
-      if (paint) view.shape.paint = new Paint(app.painter.renderer.gl, paint, buffers.triangles.length / 3);
+      const { gl } = app.painter.renderer;
+      view.shape = new Shape(gl, buffers);
+      if (paint) view.shape.wear(new Paint(gl, paint, buffers.triangles.length / 3));
       if (!app.memory.look(view)) {
         view.camera.home();
         app.cameras.frame(view);
@@ -105,7 +104,7 @@ export class Stage {
     } else {
       const { triangles, edges } = source.shape;
       result.shape = new Shape(app.painter.renderer.gl, { positions: shown.positions, triangles, edges, normals: null });
-      result.shape.paint = source.shape.paint;
+      result.shape.wear(source.shape.paint);
       if (!app.memory.look(result)) this.lookAtResult();
     }
     this.askHeat();

@@ -109,7 +109,7 @@ export class Strip {
     if (!source.shape || positions.length !== source.shape.positions.length) return;
     const { triangles, edges, paint } = source.shape;
     this.shape = new Shape(this.app.painter.renderer.gl, { positions, triangles, edges, normals: null });
-    this.shape.paint = paint;
+    this.shape.wear(paint);
   }
 
   drop() {

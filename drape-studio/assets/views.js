@@ -9,7 +9,7 @@ const CLICK = 5;
 
 class View {
   constructor(app, name) {
-    Object.assign(this, { app, name, camera: new Camera(), shape: null, isStale: true, isUnprobed: false });
+    Object.assign(this, { app, name, camera: new Camera(), shape: null, isStale: true, isUnprobed: false, isResting: false, isCoarse: false });
     this.element = document.getElementById(`view-${name}`);
     this.element.innerHTML = '<div class="name"><b></b><span></span></div><div class="badge" hidden></div><div class="empty" hidden></div><div class="markers"></div><div class="busy" role="status"></div><button class="large">⤢</button>';
     [this.title, this.about] = this.element.querySelectorAll(".name b, .name span");
@@ -160,10 +160,10 @@ class View {
     return landmark.source && landmark.source.vertices.every((v) => 3 * v < this.shape.positions.length) ? this.shape.place(landmark.source) : null;
   }
 
-  // Asks which landmarks are hidden by what was drawn.
-  probe(landmarks) {
-    const places = landmarks.map((l) => [l.id, this.place(l)?.point]).filter(([, point]) => point);
-    this.probes.ask(new Map(places), this.camera.eye);
+  // Asks which landmarks and points of curves are hidden by what was drawn.
+  probe(landmarks, nearer) {
+    const places = landmarks.map((l) => [l.id, { point: this.place(l)?.point, nearer }]).filter(([, { point }]) => point);
+    this.probes.ask(new Map([...places, ...this.app.curves.probed(this, nearer)]), this.camera.eye);
   }
 
   // Another graphics card, or the same one without what it had.

@@ -260,7 +260,8 @@ fn source_looks(source: &Source) -> DisplayedLooks {
         let face = t.parent(k).index();
         ShownTriangle {
             face,
-            corners: corners.map(|v| row_in(face, v)),
+            rows: corners.map(|v| row_in(face, v)),
+            vertices: corners.map(|v| v.index() as u32),
         }
     });
     let shown: Vec<ShownTriangle> = shown.collect();
@@ -286,9 +287,10 @@ fn triangles(
     let shown = triangles
         .iter()
         .zip(parents)
-        .map(|(corners, face)| ShownTriangle {
+        .map(|(&vertices, face)| ShownTriangle {
             face,
-            corners: corners.map(|v| v as usize),
+            rows: vertices.map(|v| v as usize),
+            vertices,
         });
     let shown = shown.collect();
     Ok((DisplayBuffers::of_mesh(frame, soup, triangles), shown))

@@ -26,6 +26,7 @@ mod pick;
 mod preview;
 mod replay;
 mod runner;
+mod seams;
 mod server;
 mod session;
 mod shapes;

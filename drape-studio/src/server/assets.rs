@@ -10,7 +10,7 @@ const SCRIPT: &str = "text/javascript; charset=utf-8";
 const SVG: &str = "image/svg+xml";
 
 /// Name, type and text of every file.
-const FILES: [(&str, &str, &str); 35] = [
+const FILES: [(&str, &str, &str); 36] = [
     ("index.html", HTML, include_str!("../../assets/index.html")),
     ("style.css", CSS, include_str!("../../assets/style.css")),
     ("icon.svg", SVG, include_str!("../../assets/icon.svg")),
@@ -54,6 +54,7 @@ const FILES: [(&str, &str, &str); 35] = [
     ),
     ("curves.js", SCRIPT, include_str!("../../assets/curves.js")),
     ("cursor.js", SCRIPT, include_str!("../../assets/cursor.js")),
+    ("detail.js", SCRIPT, include_str!("../../assets/detail.js")),
     ("files.js", SCRIPT, include_str!("../../assets/files.js")),
     ("paint.js", SCRIPT, include_str!("../../assets/paint.js")),
     ("loupe.js", SCRIPT, include_str!("../../assets/loupe.js")),

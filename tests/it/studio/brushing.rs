@@ -88,6 +88,59 @@ fn a_brushed_result_replays_to_the_same_bits() {
     wire.state(|s| s["landmarks"] == json!([]));
 }
 
+/// A request that must be taken.
+fn take(wire: &mut Wire, request: Value) -> Value {
+    let answer = wire.ask(request);
+    assert!(answer["error"].is_null(), "{answer}");
+    answer["value"].clone()
+}
+
+/// Paints a place on the front of the source.
+fn paint(x: f64, layer: &str, weight: f64) -> Value {
+    json!({ "edit": {
+        "do": "paint", "shape": "source", "layer": layer, "weight": weight, "strength": 1.0, "radius": 0.15, "done": true,
+        "ray": { "origin": [x, -0.1, 3.0], "direction": [0.0, 0.0, -1.0], "spread": 0.001 },
+    } })
+}
+
+#[test]
+fn brushes_weights_and_curves_of_one_session_replay_to_the_same_bits() {
+    let place = Workplace::new();
+    let server = Server::start(&place.path(""), &SHORT);
+    let mut wire = Wire::own(&server);
+    for (shape, x) in ["source", "target"]
+        .into_iter()
+        .flat_map(|shape| [-0.25, -0.05, 0.2].map(|x| (shape, x)))
+    {
+        let ray =
+            json!({ "origin": [x, 0.12, 3.0], "direction": [0.0, 0.0, -1.0], "spread": 0.001 });
+        take(
+            &mut wire,
+            json!({ "edit": { "do": "draw", "shape": shape, "ray": ray } }),
+        );
+    }
+    let curve = take(&mut wire, json!({ "edit": { "do": "end_curve" } }))["landmark"].clone();
+    take(
+        &mut wire,
+        json!({ "edit": { "do": "weight", "landmark": curve, "weight": 1.7 } }),
+    );
+    take(&mut wire, paint(0.25, "weights", 0.2));
+    take(&mut wire, paint(-0.25, "rigid", 1.0));
+    take(&mut wire, json!({ "command": "drape" }));
+    wire.state(|s| s["run"]["status"] == "finished");
+    let draped = download(&server, "result");
+    for brush in ["slide", "relax", "pull"] {
+        stroke(&mut wire, brush);
+    }
+    // The drape goes on from what was brushed, and is brushed again.
+    take(&mut wire, json!({ "command": "extend" }));
+    wire.state(|s| s["run"]["status"] == "finished" && s["run"]["iteration"] == 16);
+    stroke(&mut wire, "slide");
+    let result = download(&server, "result");
+    assert!(result != draped, "the brushes did nothing");
+    replays_to(&place, &server, &result);
+}
+
 #[test]
 fn the_result_is_brushed_with_the_pointer() {
     let Some(browser) = browser() else { return };

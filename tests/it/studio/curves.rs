@@ -233,7 +233,7 @@ fn a_curve_is_drawn_with_the_pointer() {
     assert_eq!(page.value("studio.state.landmarks.length"), json!(6));
     probed(&page);
     for side in ["source", "target", "result"] {
-        let line = format!("document.querySelector('#view-{side} .curves .line').getAttribute('points').split(' ').length");
+        let line = format!("document.querySelector('#view-{side} .curves .line').getAttribute('d').split('L').length");
         assert!(
             page.value(&line).as_u64() > Some(8),
             "no line on the {side}"
@@ -249,4 +249,55 @@ fn a_curve_is_drawn_with_the_pointer() {
     page.wait("studio.state.curves.length === 1");
     page.press("#drape");
     page.wait("studio.state.run.status === 'finished'");
+}
+
+/// How many steps of the line are seen in a view, and how many are behind the shape.
+fn steps(page: &Page, side: &str) -> [u64; 2] {
+    ["line", "behind"].map(|layer| {
+        let n = page.value(&format!(
+            "document.querySelector('#view-{side} .curves .{layer}').getAttribute('d').split('L').length - 1"
+        ));
+        n.as_u64().expect("a number")
+    })
+}
+
+#[test]
+fn a_line_behind_the_shape_is_faint() {
+    let Some(browser) = browser() else { return };
+    let folder = Workplace::new();
+    let mut cloud = mesh_core::shapes::icosphere(5);
+    cloud.faces.clear();
+    mesh_core::io::write_soup(folder.path("cloud.ply"), &cloud).unwrap();
+    for target in ["target.ply", "cloud.ply"] {
+        let server = Server::start(&folder.path(""), &["source.obj", target, "--fresh"]);
+        let mut wire = Wire::own(&server);
+        for (shape, x) in ["source", "target"]
+            .into_iter()
+            .flat_map(|shape| [-0.2, 0.0, 0.2].map(|x| (shape, x)))
+        {
+            // Beside the points of a cloud.
+            let mut near = place(shape, [x, 0.1]);
+            near["edit"]["ray"]["spread"] = json!(0.02);
+            assert!(wire.ask(near)["value"].is_array());
+        }
+        ask(&mut wire, json!({ "do": "end_curve" }));
+        let page = Page::open(&browser, &server.url, [1280, 800]);
+        page.wait("studio.views.source.shape && studio.views.target.shape && studio.state.curves.length === 1");
+        for (look, is_seen) in [("front", true), ("back", false)] {
+            page.press(&format!("[data-look={look}]"));
+            probed(&page);
+            for side in ["source", "target"] {
+                let [seen, behind] = steps(&page, side);
+                let (more, fewer) = if is_seen {
+                    (seen, behind)
+                } else {
+                    (behind, seen)
+                };
+                assert!(
+                    more > 8 && fewer == 0,
+                    "{target} {side} {look}: {seen} {behind}"
+                );
+            }
+        }
+    }
 }

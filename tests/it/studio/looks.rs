@@ -7,12 +7,17 @@ use serde_json::json;
 
 use super::browser::{browser, Page};
 use super::glb::{ball, glb, png};
-use super::page::{lose_graphics, middle, pixel, probed};
+use super::page::{lose_graphics, middle, pixel, pixel_beside, probed};
 use super::server::Server;
 use crate::support::Workplace;
 
 /// A bitmap of one colour.
-fn bitmap([red, green, blue]: [u8; 3]) -> Vec<u8> {
+fn bitmap(color: [u8; 3]) -> Vec<u8> {
+    striped([color; 4])
+}
+
+/// A bitmap with a colour for each column.
+fn striped(colors: [[u8; 3]; 4]) -> Vec<u8> {
     let side = 4_u32;
     let mut bytes = b"BM".to_vec();
     for n in [54 + 3 * side * side, 0, 54, 40, side, side] {
@@ -20,7 +25,8 @@ fn bitmap([red, green, blue]: [u8; 3]) -> Vec<u8> {
     }
     bytes.extend([1, 0, 24, 0]);
     bytes.extend([0; 24]);
-    bytes.extend([blue, green, red].repeat((side * side) as usize));
+    let row: Vec<u8> = colors.iter().flat_map(|[r, g, b]| [*b, *g, *r]).collect();
+    bytes.extend(row.repeat(4));
     bytes
 }
 
@@ -70,7 +76,10 @@ fn the_picture_inside_a_glb_is_seen() {
 }
 
 fn is_mostly(page: &Page, side: &str, channel: usize) -> bool {
-    let color = pixel(page, side);
+    is_of(pixel(page, side), channel)
+}
+
+fn is_of(color: [u64; 3], channel: usize) -> bool {
     (0..3).all(|k| k == channel || color[k] + 60 < color[channel])
 }
 
@@ -126,6 +135,51 @@ fn a_textured_creature_is_marked_from_its_texture() {
         "{:?}",
         pixel(&page, "source")
     );
+}
+
+/// A sheet whose left half shows the left half of a picture and whose right half the right one.
+fn seamed_sheet(place: &Workplace) {
+    let (columns, rows) = (9, 7);
+    let mut text = "mtllib seam.mtl\nvt 0.25 0.5\nvt 0.75 0.5\nusemtl skin\n".to_owned();
+    for k in 0..columns * rows {
+        let (x, y) = (k % columns, k / columns);
+        text += &format!("v {x} {y} {}\n", 0.02 * f64::from(x * y));
+    }
+    for y in 0..rows - 1 {
+        for x in 0..columns - 1 {
+            let uv = 1 + 2 * x / (columns - 1);
+            let at = 1 + y * columns + x;
+            let [b, c, d] = [at + 1, at + columns + 1, at + columns];
+            text += &format!("f {at}/{uv} {b}/{uv} {c}/{uv} {d}/{uv}\n");
+        }
+    }
+    place.write("sheet.obj", &text);
+    place.write("seam.mtl", "newmtl skin\nmap_Kd seam.bmp\n");
+    let (red, green) = ([220, 20, 20], [20, 200, 20]);
+    fs::write(place.path("seam.bmp"), striped([red, red, green, green]))
+        .expect("a picture is written");
+}
+
+#[test]
+fn a_seam_of_a_picture_is_sharp() {
+    let Some(browser) = browser() else { return };
+    let place = Workplace::new();
+    seamed_sheet(&place);
+    let server = Server::start(&place.path(""), &["source.obj", "sheet.obj"]);
+    let page = Page::open(&browser, &server.url, [1280, 800]);
+    page.wait("studio.views.target.shape?.paint && studio.views.result.shape");
+    // The seven vertices of the middle line are there twice, no other one is.
+    assert_eq!(
+        page.value("studio.views.target.shape.paint.copies.length"),
+        json!(7)
+    );
+    page.press("input[name=style][value=shaded]");
+    page.press("[data-look=front]");
+    probed(&page);
+    for (right, channel) in [(-12, 0), (-3, 0), (3, 1), (12, 1)] {
+        let color = pixel_beside(&page, "target", right);
+        assert!(is_of(color, channel), "{right}: {color:?}");
+    }
 }
 
 #[test]

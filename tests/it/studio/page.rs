@@ -122,9 +122,14 @@ pub(crate) fn middle(page: &Page, side: &str) -> [f64; 2] {
 
 /// The colour in the middle of a view.
 pub(crate) fn pixel(page: &Page, side: &str) -> [u64; 3] {
+    pixel_beside(page, side, 0)
+}
+
+/// The colour so many pixels right of the middle of a view.
+pub(crate) fn pixel_beside(page: &Page, side: &str, right: i32) -> [u64; 3] {
     let read = page.value(&format!(
         "(() => {{ const {{ gl, ratio }} = studio.painter.renderer; const b = studio.views.of('{side}').box; const out = new Uint8Array(4); \
-         const [x, y] = [b.left + b.width / 2, studio.views.size.height - b.top - b.height / 2].map((c) => Math.round(c * ratio)); \
+         const [x, y] = [b.left + b.width / 2 + {right}, studio.views.size.height - b.top - b.height / 2].map((c) => Math.round(c * ratio)); \
          gl.readPixels(x, y, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, out); return [...out]; }})()"
     ));
     [0, 1, 2].map(|k| read[k].as_u64().unwrap_or_default())
