@@ -23,6 +23,8 @@ use trial::Trial;
 const N_VERTICES: usize = 1200;
 /// Where the best trial comes to more than this, a network leads one more: pairs that come to less end above Q 0.99 anyhow.
 const POOR: f64 = 0.7;
+/// From so many starts, the best by their trials: a network may fall into the wrong pose from any one of them.
+const N_GUIDED: usize = 2;
 
 /// What a start is searched for.
 pub(crate) struct Search<'a> {
@@ -129,7 +131,7 @@ impl Start {
     }
 
     /// Tries this start, those that are led along the surfaces and that of a population, and becomes the best of them; where
-    /// all are poor, a network leads the best of them once more.
+    /// all are poor, a network leads the best two of them once more.
     ///
     /// # Errors
     /// This start cannot be tried; nothing is changed.
@@ -168,16 +170,23 @@ impl Start {
             .iter()
             .filter(|other| other.trial.is_better_start_than(&own.trial));
         let chosen = &better.min_by(cheapest).unwrap_or(&own).trial;
-        let best = others.iter().chain([&own]).min_by(cheapest).unwrap_or(&own);
+        let mut tried: Vec<&Tried> = others.iter().chain([&own]).collect();
+        tried.sort_by(cheapest);
         // Without landmarks a smooth map drifts, and a rigid body is none to it.
         let can_lead = preset.initial == InitialMethod::Tried
             && pair.n_followed() >= ENOUGH_TO_STAND
             && regions.is_none();
-        let guided = (can_lead && cost(&best) > POOR)
-            .then(|| Trial::guided(&stand_in.pair, preset, &regions, &best.start));
-        let guided = guided.and_then(Result::ok);
-        let guided = guided.filter(|guided| guided.is_better_start_than(chosen));
-        let taken = guided.as_ref().unwrap_or(chosen);
+        let is_poor = tried.first().is_some_and(|best| cost(best) > POOR);
+        tried.truncate(if can_lead && is_poor { N_GUIDED } else { 0 });
+        let guided: Vec<Trial> = tried
+            .into_par_iter()
+            .filter_map(|from| Trial::guided(&stand_in.pair, preset, &regions, &from.start).ok())
+            .collect();
+        let guided = guided
+            .iter()
+            .filter(|guided| guided.is_better_start_than(chosen));
+        let guided = guided.min_by(|a, b| a.cost().total_cmp(&b.cost()));
+        let taken = guided.unwrap_or(chosen);
         if !std::ptr::eq(taken, &own.trial) {
             self.shape.positions = stand_in.carry(&taken.positions);
         }

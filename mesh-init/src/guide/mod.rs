@@ -26,6 +26,9 @@ const LANDMARK_WEIGHT: f64 = 30.0;
 const TETHER: f64 = 1e-9;
 /// Samples of the target.
 const N_SAMPLES: usize = 3000;
+/// Ways over a graph of samples are too long by up to this factor; only what is beyond it tells that the source has another
+/// size.
+const GRAPH_ERROR: f64 = 1.1;
 /// Steps to the landmarks alone, before the rest of the surface is drawn.
 const N_FIRST_STEPS: usize = 30;
 
@@ -42,6 +45,15 @@ pub struct GuideInput<'a> {
     pub target: &'a dyn TargetSurface,
 }
 
+/// Which pairs of places the ways along the surfaces are measured from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum GuideMarks {
+    /// The landmarks.
+    Landmarks,
+    /// These, and ends of parts without a landmark where ways leave no doubt which of them belong together.
+    AndEnds,
+}
+
 /// How a guided start is found. Pairs of numbers are values in the first and in the last round, between which they change
 /// geometrically; lengths are shares of the longest side of the target.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -50,6 +62,8 @@ pub struct GuideConfig {
     pub n_rounds: usize,
     /// Steps of the surface towards them in each round.
     pub n_steps: usize,
+    /// What leads.
+    pub marks: GuideMarks,
     /// What a squared distance in space counts for in a pair, > 0.
     pub space: [f64; 2],
     /// What the squared misfit of distances to the landmarks counts for, > 0.
@@ -70,6 +84,7 @@ impl GuideConfig {
         Self {
             n_rounds: 10,
             n_steps: 4,
+            marks: GuideMarks::Landmarks,
             space: [0.1, 1.0],
             signature: [1.0, 0.5],
             normal: 0.01,
@@ -83,6 +98,7 @@ impl GuideConfig {
     pub fn soft() -> Self {
         Self {
             n_rounds: 14,
+            marks: GuideMarks::AndEnds,
             space: [0.02, 2.0],
             signature: [1.0, 0.1],
             normal: 0.09,
@@ -112,20 +128,25 @@ impl GuideConfig {
 ///
 /// Parts that turn far, and those without a landmark at their end, turn whole. The target may be a mesh, a soup or a cloud:
 /// distances along it are those of a graph over its samples. The source is as large as makes ways between landmarks as long
-/// as along the target: where these are in space tells the size of a crouching body as little as that of a rope. Ends of
-/// parts without a landmark are landmarks where ways leave no doubt which of them belong together. Pairs count by how well
-/// the way there and back agrees. Without a landmark only space and normals lead. The work grows with the number of vertices
+/// as along the target: where these are in space tells the size of a crouching body as little as that of a rope. Pairs
+/// count by how well the way there and back agrees. Without a landmark only space and normals lead. The work grows with the number of vertices
 /// times that of samples: it is meant for a stand-in of a thousand ([`mesh_core::Proxy`]). What does not depend on the
 /// settings is found once.
 pub struct Guide<'a> {
     triangulation: &'a Triangulation,
     /// The source's shape, as large as the target.
     rest: Positions,
-    /// Those of the input, and ends of parts that belong together.
-    landmarks: Vec<Landmark>,
     /// The longest side of the target.
     size: f64,
     graph: SampleGraph,
+    by_landmarks: Lead,
+    /// None where no ends belong together without a doubt.
+    by_ends: Option<Lead>,
+}
+
+/// What leads a source.
+struct Lead {
+    landmarks: Vec<Landmark>,
     misfits: Misfits,
 }
 
@@ -141,8 +162,9 @@ impl<'a> Guide<'a> {
         let graph = SampleGraph::new(input.target, N_SAMPLES);
         let ways = Ways::new(&input, &graph);
         let ratios = Ratios::new(&ways.between(input.landmarks, &graph), input.landmarks);
-        let rest = scaled(&input, ratios.on_the_whole());
-        let ways = ways.scaled(ratios.on_the_whole());
+        let ratio = beyond(ratios.on_the_whole(), GRAPH_ERROR);
+        let rest = scaled(&input, ratio);
+        let ways = ways.scaled(ratio);
         let ends = Ends {
             triangulation: input.triangulation,
             rest: &rest,
@@ -152,21 +174,35 @@ impl<'a> Guide<'a> {
             size,
         };
         let ends = ends.pairs();
-        let more = GuideInput {
-            rest: &rest,
-            landmarks: &ends,
-            ..input
+        let lead = |landmarks: Vec<Landmark>, ways: &Ways| Lead {
+            misfits: Misfits::new(ways, &landmarks, &graph, &rest, size),
+            landmarks,
         };
-        let ways = ways.and(Ways::new(&more, &graph));
-        let landmarks = [input.landmarks, &ends].concat();
+        let by_landmarks = lead(input.landmarks.to_vec(), &ways);
+        let by_ends = (!ends.is_empty()).then(|| {
+            let more = GuideInput {
+                rest: &rest,
+                landmarks: &ends,
+                ..input
+            };
+            let ways = ways.and(Ways::new(&more, &graph));
+            lead([input.landmarks, &ends].concat(), &ways)
+        });
         Ok(Self {
             triangulation: input.triangulation,
-            misfits: Misfits::new(&ways, &landmarks, &graph, &rest, size),
-            landmarks,
+            by_landmarks,
+            by_ends,
             rest,
             size,
             graph,
         })
+    }
+
+    fn lead(&self, marks: GuideMarks) -> &Lead {
+        match (marks, &self.by_ends) {
+            (GuideMarks::AndEnds, Some(lead)) => lead,
+            _ => &self.by_landmarks,
+        }
     }
 
     /// One position per vertex, in the target's coordinates; where the rest shape is if the target has no extent.
@@ -174,15 +210,15 @@ impl<'a> Guide<'a> {
     /// # Errors
     /// The rest shape is so degenerate that its surface does not determine a deformation.
     pub fn start(&self, config: &GuideConfig) -> Result<Positions, InitError> {
-        let size = self.size;
+        let (size, lead) = (self.size, self.lead(config.marks));
         let mut x = self.rest.clone();
         if size <= 0.0 {
             return Ok(x);
         }
         let mut elastic = Elastic::new(self.triangulation, &self.rest, size, config)?;
-        if !self.landmarks.is_empty() {
+        if !lead.landmarks.is_empty() {
             let nothing = vec![None; x.len()];
-            let goals = self.goals(&elastic, &x, &nothing, size);
+            let goals = lead.goals(&elastic, &x, &nothing, size);
             elastic.draw(&mut x, &goals, N_FIRST_STEPS)?;
         }
         for round in 0..config.n_rounds {
@@ -192,17 +228,19 @@ impl<'a> Guide<'a> {
                 rest: &self.rest,
                 x: &x,
                 graph: &self.graph,
-                misfits: &self.misfits,
+                misfits: &lead.misfits,
                 size,
             };
             let counterparts = shapes.counterparts(config.cost(t));
             let detail = GuideConfig::between(config.detail, t) * size;
-            let goals = self.goals(&elastic, &x, &counterparts, detail);
+            let goals = lead.goals(&elastic, &x, &counterparts, detail);
             elastic.draw(&mut x, &goals, config.n_steps)?;
         }
         Ok(x)
     }
+}
 
+impl Lead {
     /// Landmarks and counterparts as goals; what has neither is held by next to nothing.
     fn goals(
         &self,
@@ -236,6 +274,11 @@ impl<'a> Guide<'a> {
         }
         goals
     }
+}
+
+/// A ratio nearer to 1 by a factor; 1 where it is within the factor.
+fn beyond(ratio: f64, factor: f64) -> f64 {
+    ratio / ratio.clamp(1.0 / factor, factor)
 }
 
 /// The source's shape, `ratio` times as large about the middle of its landmarks.
