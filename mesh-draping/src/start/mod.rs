@@ -217,7 +217,11 @@ fn led(pair: &Pair, stand_in: &StandIn) -> Vec<Positions> {
     let Ok(guide) = guide else {
         return Vec::new();
     };
-    let configs = [GuideConfig::stiff(), GuideConfig::soft()];
+    let configs = [
+        GuideConfig::stiff(),
+        GuideConfig::soft(),
+        GuideConfig::by_ends(),
+    ];
     let starts: Vec<Result<Positions, InitError>> =
         configs.par_iter().map(|c| guide.start(c)).collect();
     starts.into_iter().flatten().collect()

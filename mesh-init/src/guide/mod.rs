@@ -98,14 +98,24 @@ impl GuideConfig {
     pub fn soft() -> Self {
         Self {
             n_rounds: 14,
-            marks: GuideMarks::AndEnds,
             space: [0.02, 2.0],
             signature: [1.0, 0.1],
             normal: 0.09,
+            detail: [0.15, 0.015],
+            frame_radius: 0.05,
+            bending_length: 0.02,
+            ..Self::stiff()
+        }
+    }
+
+    /// As [`Self::soft`], on broader ways, and ends without a landmark lead, too.
+    pub fn by_ends() -> Self {
+        Self {
+            marks: GuideMarks::AndEnds,
             detail: [0.2, 0.02],
             frame_radius: 0.065,
             bending_length: 0.026,
-            ..Self::stiff()
+            ..Self::soft()
         }
     }
 
@@ -128,10 +138,10 @@ impl GuideConfig {
 ///
 /// Parts that turn far, and those without a landmark at their end, turn whole. The target may be a mesh, a soup or a cloud:
 /// distances along it are those of a graph over its samples. The source is as large as makes ways between landmarks as long
-/// as along the target: where these are in space tells the size of a crouching body as little as that of a rope. Pairs
-/// count by how well the way there and back agrees. Without a landmark only space and normals lead. The work grows with the number of vertices
-/// times that of samples: it is meant for a stand-in of a thousand ([`mesh_core::Proxy`]). What does not depend on the
-/// settings is found once.
+/// as along the target, as far as the graph tells: how far apart they are in space says little of a body that crouches. Pairs
+/// count by how well the way there and back agrees. Without a landmark only space and normals lead. The work grows with the
+/// number of vertices times that of samples: it is meant for a stand-in of a thousand ([`mesh_core::Proxy`]). What does not
+/// depend on the settings is found once.
 pub struct Guide<'a> {
     triangulation: &'a Triangulation,
     /// The source's shape, as large as the target.

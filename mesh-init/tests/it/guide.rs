@@ -101,7 +101,11 @@ fn an_end_without_a_landmark_turns_whole() {
     let before = miss(&by_landmarks.positions, &bend.truth);
     let targets: [&dyn TargetSurface; 2] = [&bend.mesh, &bend.cloud];
     for target in targets {
-        for config in [GuideConfig::stiff(), GuideConfig::soft()] {
+        for config in [
+            GuideConfig::stiff(),
+            GuideConfig::soft(),
+            GuideConfig::by_ends(),
+        ] {
             let after = miss(&guided(&bend, target, &config), &bend.truth);
             assert!(after < 0.4 * before, "{before} to {after}");
         }
@@ -176,7 +180,7 @@ fn ends_without_landmarks_find_each_other() {
         marks: GuideMarks::AndEnds,
         ..GuideConfig::stiff()
     };
-    for config in [stiff, GuideConfig::soft()] {
+    for config in [stiff, GuideConfig::by_ends()] {
         let x = guide.start(&config).expect("a star can be deformed");
         for end in [
             [4.0, 0.0, 0.0],
