@@ -50,7 +50,9 @@ pub struct GuideInput<'a> {
 pub enum GuideMarks {
     /// The landmarks.
     Landmarks,
-    /// These, and ends of parts without a landmark where ways leave no doubt which of them belong together.
+    /// These, and ends of parts without a landmark where ways leave no doubt which of them belong together. The source is as
+    /// large as makes ways between landmarks as long as along the target, as far as the graph tells: how far apart they are
+    /// in space says little of a body that crouches.
     AndEnds,
 }
 
@@ -137,25 +139,20 @@ impl GuideConfig {
 /// landmark, as long as the surface keeps its shape; later, more and more, to the one that is near in space.
 ///
 /// Parts that turn far, and those without a landmark at their end, turn whole. The target may be a mesh, a soup or a cloud:
-/// distances along it are those of a graph over its samples. The source is as large as makes ways between landmarks as long
-/// as along the target, as far as the graph tells: how far apart they are in space says little of a body that crouches. Pairs
-/// count by how well the way there and back agrees. Without a landmark only space and normals lead. The work grows with the
-/// number of vertices times that of samples: it is meant for a stand-in of a thousand ([`mesh_core::Proxy`]). What does not
-/// depend on the settings is found once.
+/// distances along it are those of a graph over its samples. Pairs count by how well the way there and back agrees. Without
+/// a landmark only space and normals lead. The work grows with the number of vertices times that of samples: it is meant
+/// for a stand-in of a thousand ([`mesh_core::Proxy`]). The ways are measured once.
 pub struct Guide<'a> {
-    triangulation: &'a Triangulation,
-    /// The source's shape, as large as the target.
-    rest: Positions,
+    input: GuideInput<'a>,
     /// The longest side of the target.
     size: f64,
     graph: SampleGraph,
-    by_landmarks: Lead,
-    /// None where no ends belong together without a doubt.
-    by_ends: Option<Lead>,
+    ways: Ways,
 }
 
 /// What leads a source.
 struct Lead {
+    rest: Positions,
     landmarks: Vec<Landmark>,
     misfits: Misfits,
 }
@@ -168,50 +165,58 @@ impl<'a> Guide<'a> {
     pub fn new(input: GuideInput<'a>) -> Result<Self, InitError> {
         check_length(input.triangulation.n_vertices(), input.rest)?;
         check_landmarks(input.triangulation.n_vertices(), input.landmarks)?;
-        let size = input.target.bounds().longest_side();
         let graph = SampleGraph::new(input.target, N_SAMPLES);
-        let ways = Ways::new(&input, &graph);
-        let ratios = Ratios::new(&ways.between(input.landmarks, &graph), input.landmarks);
+        Ok(Self {
+            size: input.target.bounds().longest_side(),
+            ways: Ways::new(&input, &graph),
+            graph,
+            input,
+        })
+    }
+
+    fn lead(&self, marks: GuideMarks) -> Lead {
+        match marks {
+            GuideMarks::Landmarks => self.by_landmarks(),
+            GuideMarks::AndEnds => self.by_ends(),
+        }
+    }
+
+    fn by_landmarks(&self) -> Lead {
+        let (rest, landmarks) = (self.input.rest, self.input.landmarks);
+        Lead {
+            misfits: Misfits::new(&self.ways, landmarks, &self.graph, rest, self.size),
+            landmarks: landmarks.to_vec(),
+            rest: rest.clone(),
+        }
+    }
+
+    /// The source is as large as ways tell; ends are landmarks where no doubt is left which of them belong together.
+    fn by_ends(&self) -> Lead {
+        let (input, graph, size) = (&self.input, &self.graph, self.size);
+        let ratios = Ratios::new(&self.ways.between(input.landmarks, graph), input.landmarks);
         let ratio = beyond(ratios.on_the_whole(), GRAPH_ERROR);
-        let rest = scaled(&input, ratio);
-        let ways = ways.scaled(ratio);
+        let rest = scaled(input, ratio);
+        let ways = self.ways.clone().scaled(ratio);
         let ends = Ends {
             triangulation: input.triangulation,
             rest: &rest,
-            graph: &graph,
+            graph,
             landmarks: input.landmarks,
             ways: &ways,
             size,
         };
         let ends = ends.pairs();
-        let lead = |landmarks: Vec<Landmark>, ways: &Ways| Lead {
-            misfits: Misfits::new(ways, &landmarks, &graph, &rest, size),
-            landmarks,
+        let more = GuideInput {
+            rest: &rest,
+            landmarks: &ends,
+            ..*input
         };
-        let by_landmarks = lead(input.landmarks.to_vec(), &ways);
-        let by_ends = (!ends.is_empty()).then(|| {
-            let more = GuideInput {
-                rest: &rest,
-                landmarks: &ends,
-                ..input
-            };
-            let ways = ways.and(Ways::new(&more, &graph));
-            lead([input.landmarks, &ends].concat(), &ways)
-        });
-        Ok(Self {
-            triangulation: input.triangulation,
-            by_landmarks,
-            by_ends,
+        let ways = ways.and(Ways::new(&more, graph));
+        let landmarks = [input.landmarks, &ends].concat();
+        Lead {
+            misfits: Misfits::new(&ways, &landmarks, graph, &rest, size),
+            landmarks,
             rest,
-            size,
-            graph,
-        })
-    }
-
-    fn lead(&self, marks: GuideMarks) -> &Lead {
-        match (marks, &self.by_ends) {
-            (GuideMarks::AndEnds, Some(lead)) => lead,
-            _ => &self.by_landmarks,
         }
     }
 
@@ -220,12 +225,13 @@ impl<'a> Guide<'a> {
     /// # Errors
     /// The rest shape is so degenerate that its surface does not determine a deformation.
     pub fn start(&self, config: &GuideConfig) -> Result<Positions, InitError> {
-        let (size, lead) = (self.size, self.lead(config.marks));
-        let mut x = self.rest.clone();
+        let (triangulation, size) = (self.input.triangulation, self.size);
         if size <= 0.0 {
-            return Ok(x);
+            return Ok(self.input.rest.clone());
         }
-        let mut elastic = Elastic::new(self.triangulation, &self.rest, size, config)?;
+        let lead = self.lead(config.marks);
+        let mut x = lead.rest.clone();
+        let mut elastic = Elastic::new(triangulation, &lead.rest, size, config)?;
         if !lead.landmarks.is_empty() {
             let nothing = vec![None; x.len()];
             let goals = lead.goals(&elastic, &x, &nothing, size);
@@ -234,8 +240,8 @@ impl<'a> Guide<'a> {
         for round in 0..config.n_rounds {
             let t = round as f64 / (config.n_rounds - 1).max(1) as f64;
             let shapes = Shapes {
-                triangulation: self.triangulation,
-                rest: &self.rest,
+                triangulation,
+                rest: &lead.rest,
                 x: &x,
                 graph: &self.graph,
                 misfits: &lead.misfits,

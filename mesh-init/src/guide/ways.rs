@@ -30,6 +30,7 @@ impl LandmarkWays {
 }
 
 /// Lengths of the ways along both shapes from each landmark (row) to everywhere.
+#[derive(Clone)]
 pub(super) struct Ways {
     /// To each vertex of the source.
     pub(super) on_source: Vec<VertexData<f64>>,

@@ -120,7 +120,7 @@ fn the_size_given_does_not_matter() {
         rest: here.rest.map(|p| p * 0.2),
         ..bend(2.8)
     };
-    let config = GuideConfig::soft();
+    let config = GuideConfig::by_ends();
     let expected = guided(&here, &here.mesh, &config);
     let found = guided(&small, &small.mesh, &config);
     assert!(miss(&found, &expected) < 0.02);
