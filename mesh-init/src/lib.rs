@@ -52,7 +52,7 @@ pub use arap::{ArapScratch, ArapSolver};
 pub use biharmonic::{biharmonic_displacement, BiharmonicSolver};
 pub use config::{InitConfig, Pinning, Spread};
 pub use error::InitError;
-pub use guide::{Guide, GuideConfig, GuideInput, GuideMarks, LandmarkWays};
+pub use guide::{Guide, GuideConfig, GuideInput, LandmarkWays};
 pub use initialize::{adjust, initialize, point_pairs, InitInput, Initial};
 pub use interactive::InteractiveInit;
 pub use pose::{find_pose, Pose, PoseInput};

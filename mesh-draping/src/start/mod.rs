@@ -23,8 +23,6 @@ use trial::Trial;
 const N_VERTICES: usize = 1200;
 /// Where the best trial comes to more than this, a network leads one more: pairs that come to less end above Q 0.99 anyhow.
 const POOR: f64 = 0.7;
-/// From so many starts, the best by their trials, where ends led one of them: a network may fall into the wrong pose from any.
-const N_GUIDED: usize = 2;
 
 /// What a start is searched for.
 pub(crate) struct Search<'a> {
@@ -130,9 +128,8 @@ impl Start {
         })
     }
 
-    /// Tries this start, those that are led along the surfaces and that of a population, and becomes the best of them. Where
-    /// all are poor, one more is led by ends without landmarks, and, if it is poor as well, a network leads the best two once
-    /// more; over a cloud, which tells less of where parts end, a network leads the best.
+    /// Tries this start, those that are led along the surfaces and that of a population, and becomes the best of them; where
+    /// all are poor, a network leads the best of them once more.
     ///
     /// # Errors
     /// This start cannot be tried; nothing is changed.
@@ -153,11 +150,7 @@ impl Start {
             || trial(first),
             || -> Vec<Tried> {
                 let starts = match search.is_tried() {
-                    true => led(
-                        pair,
-                        &stand_in,
-                        &[GuideConfig::stiff(), GuideConfig::soft()],
-                    ),
+                    true => led(pair, &stand_in),
                     false => Vec::new(),
                 };
                 let trials: Vec<Result<Tried, Error>> = starts.into_par_iter().map(trial).collect();
@@ -169,36 +162,22 @@ impl Start {
         let prior = population.filter(|_| !own.trial.is_any_left_out);
         let fitted = prior.and_then(|p| search.fitted(p, &self.shape.positions).ok());
         others.extend(fitted.and_then(|x| trial(stand_in.pick(&x)).ok()));
-        let is_poor = |others: &[Tried]| others.iter().chain([&own]).all(|t| t.trial.cost() > POOR);
-        let is_led_by_ends = search.is_tried() && is_poor(&others) && !pair.target.is_cloud();
-        if is_led_by_ends {
-            let starts = led(pair, &stand_in, &[GuideConfig::by_ends()]);
-            others.extend(starts.into_iter().filter_map(|x| trial(x).ok()));
-        }
-        let cheapest = |a: &&Tried, b: &&Tried| a.trial.cost().total_cmp(&b.trial.cost());
+        let cost = |tried: &&Tried| tried.trial.cost();
+        let cheapest = |a: &&Tried, b: &&Tried| cost(a).total_cmp(&cost(b));
         let better = others
             .iter()
             .filter(|other| other.trial.is_better_start_than(&own.trial));
         let chosen = &better.min_by(cheapest).unwrap_or(&own).trial;
-        let mut tried: Vec<&Tried> = others.iter().chain([&own]).collect();
-        tried.sort_by(cheapest);
+        let best = others.iter().chain([&own]).min_by(cheapest).unwrap_or(&own);
         // Without landmarks a smooth map drifts, and a rigid body is none to it.
         let can_lead = preset.initial == InitialMethod::Tried
             && pair.n_followed() >= ENOUGH_TO_STAND
             && regions.is_none();
-        let n_guided = if is_led_by_ends { N_GUIDED } else { 1 };
-        tried.truncate(if can_lead && is_poor(&others) {
-            n_guided
-        } else {
-            0
-        });
-        let guided = tried.into_par_iter().filter_map(|from| {
-            let guided = Trial::guided(&stand_in.pair, preset, &regions, &from.start).ok()?;
-            guided.is_better_start_than(chosen).then_some(guided)
-        });
-        let guided: Vec<Trial> = guided.collect();
-        let guided = guided.iter().min_by(|a, b| a.cost().total_cmp(&b.cost()));
-        let taken = guided.unwrap_or(chosen);
+        let guided = (can_lead && cost(&best) > POOR)
+            .then(|| Trial::guided(&stand_in.pair, preset, &regions, &best.start));
+        let guided = guided.and_then(Result::ok);
+        let guided = guided.filter(|guided| guided.is_better_start_than(chosen));
+        let taken = guided.as_ref().unwrap_or(chosen);
         if !std::ptr::eq(taken, &own.trial) {
             self.shape.positions = stand_in.carry(&taken.positions);
         }
@@ -214,7 +193,7 @@ struct Tried {
 }
 
 /// Shapes of the stand-in that are led along the surfaces.
-fn led(pair: &Pair, stand_in: &StandIn, configs: &[GuideConfig]) -> Vec<Positions> {
+fn led(pair: &Pair, stand_in: &StandIn) -> Vec<Positions> {
     if pair.n_followed() < ENOUGH_TO_STAND {
         return Vec::new();
     }
@@ -229,6 +208,7 @@ fn led(pair: &Pair, stand_in: &StandIn, configs: &[GuideConfig]) -> Vec<Position
     let Ok(guide) = guide else {
         return Vec::new();
     };
+    let configs = [GuideConfig::stiff(), GuideConfig::soft()];
     let starts: Vec<Result<Positions, InitError>> =
         configs.par_iter().map(|c| guide.start(c)).collect();
     starts.into_iter().flatten().collect()

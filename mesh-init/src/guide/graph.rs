@@ -50,13 +50,6 @@ impl SampleGraph {
         }
     }
 
-    /// Rows of the neighbours of a sample.
-    pub(super) fn neighbours(&self, row: usize) -> impl Iterator<Item = usize> + '_ {
-        self.neighbours[row]
-            .iter()
-            .map(|&(other, _)| other as usize)
-    }
-
     /// The row of the sample nearest to `p`; none where there is no sample.
     pub(super) fn nearest(&self, p: &Point3) -> Option<usize> {
         let squared = |row: &usize| (self.points[*row] - p).norm_squared();

@@ -2,22 +2,19 @@
 
 mod counterpart;
 mod elastic;
-mod ends;
 mod graph;
 mod signature;
 mod ways;
 
-use mesh_core::{Landmark, Point3, Positions, TargetSurface, Triangulation, Vector3};
+use mesh_core::{Landmark, Positions, TargetSurface, Triangulation, Vector3};
 
 use crate::initialize::{check_landmarks, check_length};
 use crate::InitError;
 use counterpart::{PairCost, Shapes};
 use elastic::{Elastic, Goal};
-use ends::Ends;
 use graph::SampleGraph;
-use signature::{Misfits, Ratios};
+use signature::Misfits;
 pub use ways::LandmarkWays;
-use ways::Ways;
 
 /// Pull of a landmark; 1 is about as strong as the surface's own.
 const LANDMARK_WEIGHT: f64 = 30.0;
@@ -26,9 +23,6 @@ const LANDMARK_WEIGHT: f64 = 30.0;
 const TETHER: f64 = 1e-9;
 /// Samples of the target.
 const N_SAMPLES: usize = 3000;
-/// Ways over a graph of samples are too long by up to this factor; only what is beyond it tells that the source has another
-/// size.
-const GRAPH_ERROR: f64 = 1.1;
 /// Steps to the landmarks alone, before the rest of the surface is drawn.
 const N_FIRST_STEPS: usize = 30;
 
@@ -37,23 +31,12 @@ const N_FIRST_STEPS: usize = 30;
 pub struct GuideInput<'a> {
     /// The source's polygons as triangles.
     pub triangulation: &'a Triangulation,
-    /// The source's shape, in the target's coordinates: turned, moved and scaled, not sheared. It is kept, but for its size.
+    /// The source's shape, in the target's coordinates: turned, moved and scaled, not sheared. It is kept.
     pub rest: &'a Positions,
     /// Places that belong together, each with a weight above 0.
     pub landmarks: &'a [Landmark],
     /// The shape to bring it to.
     pub target: &'a dyn TargetSurface,
-}
-
-/// Which pairs of places the ways along the surfaces are measured from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum GuideMarks {
-    /// The landmarks.
-    Landmarks,
-    /// These, and ends of parts without a landmark where ways leave no doubt which of them belong together. The source is as
-    /// large as makes ways between landmarks as long as along the target, as far as the graph tells: how far apart they are
-    /// in space says little of a body that crouches.
-    AndEnds,
 }
 
 /// How a guided start is found. Pairs of numbers are values in the first and in the last round, between which they change
@@ -64,8 +47,6 @@ pub struct GuideConfig {
     pub n_rounds: usize,
     /// Steps of the surface towards them in each round.
     pub n_steps: usize,
-    /// What leads.
-    pub marks: GuideMarks,
     /// What a squared distance in space counts for in a pair, > 0.
     pub space: [f64; 2],
     /// What the squared misfit of distances to the landmarks counts for, > 0.
@@ -86,7 +67,6 @@ impl GuideConfig {
         Self {
             n_rounds: 10,
             n_steps: 4,
-            marks: GuideMarks::Landmarks,
             space: [0.1, 1.0],
             signature: [1.0, 0.5],
             normal: 0.01,
@@ -110,17 +90,6 @@ impl GuideConfig {
         }
     }
 
-    /// As [`Self::soft`], on broader ways, and ends without a landmark lead, too.
-    pub fn by_ends() -> Self {
-        Self {
-            marks: GuideMarks::AndEnds,
-            detail: [0.2, 0.02],
-            frame_radius: 0.065,
-            bending_length: 0.026,
-            ..Self::soft()
-        }
-    }
-
     /// Between the two values of a setting, at `t` in 0..=1.
     fn between([first, last]: [f64; 2], t: f64) -> f64 {
         first * (last / first).powf(t)
@@ -141,19 +110,12 @@ impl GuideConfig {
 /// Parts that turn far, and those without a landmark at their end, turn whole. The target may be a mesh, a soup or a cloud:
 /// distances along it are those of a graph over its samples. Pairs count by how well the way there and back agrees. Without
 /// a landmark only space and normals lead. The work grows with the number of vertices times that of samples: it is meant
-/// for a stand-in of a thousand ([`mesh_core::Proxy`]). The ways are measured once.
+/// for a stand-in of a thousand ([`mesh_core::Proxy`]). What does not depend on the settings is found once.
 pub struct Guide<'a> {
     input: GuideInput<'a>,
     /// The longest side of the target.
     size: f64,
     graph: SampleGraph,
-    ways: Ways,
-}
-
-/// What leads a source.
-struct Lead {
-    rest: Positions,
-    landmarks: Vec<Landmark>,
     misfits: Misfits,
 }
 
@@ -165,59 +127,14 @@ impl<'a> Guide<'a> {
     pub fn new(input: GuideInput<'a>) -> Result<Self, InitError> {
         check_length(input.triangulation.n_vertices(), input.rest)?;
         check_landmarks(input.triangulation.n_vertices(), input.landmarks)?;
+        let size = input.target.bounds().longest_side();
         let graph = SampleGraph::new(input.target, N_SAMPLES);
         Ok(Self {
-            size: input.target.bounds().longest_side(),
-            ways: Ways::new(&input, &graph),
-            graph,
+            misfits: Misfits::new(&input, &graph, size),
             input,
-        })
-    }
-
-    fn lead(&self, marks: GuideMarks) -> Lead {
-        match marks {
-            GuideMarks::Landmarks => self.by_landmarks(),
-            GuideMarks::AndEnds => self.by_ends(),
-        }
-    }
-
-    fn by_landmarks(&self) -> Lead {
-        let (rest, landmarks) = (self.input.rest, self.input.landmarks);
-        Lead {
-            misfits: Misfits::new(&self.ways, landmarks, &self.graph, rest, self.size),
-            landmarks: landmarks.to_vec(),
-            rest: rest.clone(),
-        }
-    }
-
-    /// The source is as large as ways tell; ends are landmarks where no doubt is left which of them belong together.
-    fn by_ends(&self) -> Lead {
-        let (input, graph, size) = (&self.input, &self.graph, self.size);
-        let ratios = Ratios::new(&self.ways.between(input.landmarks, graph), input.landmarks);
-        let ratio = beyond(ratios.on_the_whole(), GRAPH_ERROR);
-        let rest = scaled(input, ratio);
-        let ways = self.ways.clone().scaled(ratio);
-        let ends = Ends {
-            triangulation: input.triangulation,
-            rest: &rest,
-            graph,
-            landmarks: input.landmarks,
-            ways: &ways,
             size,
-        };
-        let ends = ends.pairs();
-        let more = GuideInput {
-            rest: &rest,
-            landmarks: &ends,
-            ..*input
-        };
-        let ways = ways.and(Ways::new(&more, graph));
-        let landmarks = [input.landmarks, &ends].concat();
-        Lead {
-            misfits: Misfits::new(&ways, &landmarks, graph, &rest, size),
-            landmarks,
-            rest,
-        }
+            graph,
+        })
     }
 
     /// One position per vertex, in the target's coordinates; where the rest shape is if the target has no extent.
@@ -225,86 +142,69 @@ impl<'a> Guide<'a> {
     /// # Errors
     /// The rest shape is so degenerate that its surface does not determine a deformation.
     pub fn start(&self, config: &GuideConfig) -> Result<Positions, InitError> {
-        let (triangulation, size) = (self.input.triangulation, self.size);
+        let (input, size) = (&self.input, self.size);
+        let mut x = input.rest.clone();
         if size <= 0.0 {
-            return Ok(self.input.rest.clone());
+            return Ok(x);
         }
-        let lead = self.lead(config.marks);
-        let mut x = lead.rest.clone();
-        let mut elastic = Elastic::new(triangulation, &lead.rest, size, config)?;
-        if !lead.landmarks.is_empty() {
+        let mut elastic = Elastic::new(input.triangulation, input.rest, size, config)?;
+        if !input.landmarks.is_empty() {
             let nothing = vec![None; x.len()];
-            let goals = lead.goals(&elastic, &x, &nothing, size);
+            let goals = goals(input, &elastic, &x, &nothing, size);
             elastic.draw(&mut x, &goals, N_FIRST_STEPS)?;
         }
         for round in 0..config.n_rounds {
             let t = round as f64 / (config.n_rounds - 1).max(1) as f64;
             let shapes = Shapes {
-                triangulation,
-                rest: &lead.rest,
+                triangulation: input.triangulation,
+                rest: input.rest,
                 x: &x,
                 graph: &self.graph,
-                misfits: &lead.misfits,
+                misfits: &self.misfits,
                 size,
             };
             let counterparts = shapes.counterparts(config.cost(t));
             let detail = GuideConfig::between(config.detail, t) * size;
-            let goals = lead.goals(&elastic, &x, &counterparts, detail);
+            let goals = goals(input, &elastic, &x, &counterparts, detail);
             elastic.draw(&mut x, &goals, config.n_steps)?;
         }
         Ok(x)
     }
 }
 
-impl Lead {
-    /// Landmarks and counterparts as goals; what has neither is held by next to nothing.
-    fn goals(
-        &self,
-        elastic: &Elastic,
-        x: &Positions,
-        counterparts: &[Option<(Point3, f64)>],
-        detail: f64,
-    ) -> Vec<Goal> {
-        let goal = |((p, counterpart), m): ((&Point3, &Option<_>), &f64)| {
-            let (point, confidence) = counterpart.unwrap_or((*p, 0.0));
-            Goal {
-                point,
-                weight: (confidence + TETHER) * m / detail.powi(2),
-            }
-        };
-        let places = x.iter().zip(counterparts).zip(elastic.mass());
-        let mut goals: Vec<Goal> = places.map(goal).collect();
-        // Those of curves first: where both are at one vertex, the landmark leads.
-        let is_cut = |l: &&Landmark| l.curve.is_some();
-        let (cut, marked) = (self.landmarks.iter().filter(is_cut), self.landmarks.iter());
-        for l in cut.chain(marked.filter(|l| !is_cut(l))) {
-            let vertex = l.source.main_vertex();
-            let offset = match l.curve {
-                Some(_) => x[vertex] - l.source.position(x),
-                None => Vector3::zeros(),
-            };
-            goals[vertex.index()] = Goal {
-                point: l.target + offset,
-                weight: LANDMARK_WEIGHT * l.pull(),
-            };
+/// Landmarks and counterparts as goals; what has neither is held by next to nothing.
+fn goals(
+    input: &GuideInput<'_>,
+    elastic: &Elastic,
+    x: &Positions,
+    counterparts: &[Option<(mesh_core::Point3, f64)>],
+    detail: f64,
+) -> Vec<Goal> {
+    let goal = |((p, counterpart), m): ((&mesh_core::Point3, &Option<_>), &f64)| {
+        let (point, confidence) = counterpart.unwrap_or((*p, 0.0));
+        Goal {
+            point,
+            weight: (confidence + TETHER) * m / detail.powi(2),
         }
-        goals
+    };
+    let places = x.iter().zip(counterparts).zip(elastic.mass());
+    let mut goals: Vec<Goal> = places.map(goal).collect();
+    // Those of curves first: where both are at one vertex, the landmark leads.
+    let is_cut = |l: &&Landmark| l.curve.is_some();
+    let (cut, marked) = (
+        input.landmarks.iter().filter(is_cut),
+        input.landmarks.iter(),
+    );
+    for l in cut.chain(marked.filter(|l| !is_cut(l))) {
+        let vertex = l.source.main_vertex();
+        let offset = match l.curve {
+            Some(_) => x[vertex] - l.source.position(x),
+            None => Vector3::zeros(),
+        };
+        goals[vertex.index()] = Goal {
+            point: l.target + offset,
+            weight: LANDMARK_WEIGHT * l.pull(),
+        };
     }
-}
-
-/// A ratio nearer to 1 by a factor; 1 where it is within the factor.
-fn beyond(ratio: f64, factor: f64) -> f64 {
-    ratio / ratio.clamp(1.0 / factor, factor)
-}
-
-/// The source's shape, `ratio` times as large about the middle of its landmarks.
-fn scaled(input: &GuideInput<'_>, ratio: f64) -> Positions {
-    let marks = input
-        .landmarks
-        .iter()
-        .map(|l| l.source.position(input.rest).coords);
-    let middle = marks.sum::<Vector3>() / input.landmarks.len().max(1) as f64;
-    input
-        .rest
-        .map(|p| Point3::from(middle + (p.coords - middle) * ratio))
+    goals
 }

@@ -1,16 +1,17 @@
 //! How far a place is from every landmark along its surface: where it is on the body, however the body stands.
 
-use mesh_core::{Landmark, Positions, VertexId};
+use mesh_core::{Landmark, VertexId};
 use rayon::prelude::*;
 
 use super::graph::SampleGraph;
 use super::ways::{LandmarkWays, Ways};
+use super::GuideInput;
 
 /// Landmarks nearer than this share of the longest side count alike.
 const NEAR: f64 = 0.1;
 /// The same where ratios of lengths are carried from landmarks to places.
 const NEAR_RATIO: f64 = 0.02;
-/// Ratios of lengths beyond this times the middle one, up or down, are those of a path through a crack or a touch.
+/// Ratios of lengths beyond this, up or down, are those of a path through a crack or a touch.
 const LARGEST_RATIO: f64 = 5.0;
 /// How much the median ratio counts beside those of landmarks at one longest side.
 const MEDIAN_WEIGHT: f64 = 0.5;
@@ -32,18 +33,13 @@ pub(super) struct Misfits {
 
 impl Misfits {
     /// `size` is the longest side of the target.
-    pub(super) fn new(
-        ways: &Ways,
-        landmarks: &[Landmark],
-        graph: &SampleGraph,
-        rest: &Positions,
-        size: f64,
-    ) -> Self {
+    pub(super) fn new(input: &GuideInput<'_>, graph: &SampleGraph, size: f64) -> Self {
         let n_samples = graph.points.len();
-        let ratios = Ratios::new(&ways.between(landmarks, graph), landmarks);
+        let ways = Ways::new(input, graph);
+        let ratios = Ratios::new(&ways.between(input.landmarks, graph), input.landmarks);
         let found = |t: usize| ways.on_target.iter().map(move |d| (d[t] / size) as f32);
         let found: Vec<f32> = (0..n_samples).flat_map(found).collect();
-        let rows = rest.ids().collect::<Vec<VertexId>>();
+        let rows = input.rest.ids().collect::<Vec<VertexId>>();
         let rows = rows.into_par_iter().flat_map_iter(|v| {
             let to_landmarks: Vec<f64> = ways.on_source.iter().map(|d| d[v]).collect();
             let expected = ratios.expected(&to_landmarks, size);
@@ -66,7 +62,7 @@ impl Misfits {
 }
 
 /// How much longer a way is on the target.
-pub(super) struct Ratios {
+struct Ratios {
     /// From one landmark (row) to another (column), as a logarithm; none where no way leads.
     between: Vec<Vec<Option<f64>>>,
     /// The logarithm of the middle one.
@@ -76,38 +72,28 @@ pub(super) struct Ratios {
 }
 
 impl Ratios {
-    pub(super) fn new(ways: &LandmarkWays, landmarks: &[Landmark]) -> Self {
+    fn new(ways: &LandmarkWays, landmarks: &[Landmark]) -> Self {
         let ratio = |i: usize, j: usize| {
             let ratio = ways.on_target[j][i] / ways.on_source[j][i];
             let is_way = i != j && ratio.is_finite() && ratio > 0.0;
-            is_way.then(|| ratio.ln())
+            is_way.then(|| ratio.clamp(1.0 / LARGEST_RATIO, LARGEST_RATIO).ln())
         };
         let n = ways.on_source.len();
-        let mut between: Vec<Vec<Option<f64>>> = (0..n)
+        let between: Vec<Vec<Option<f64>>> = (0..n)
             .map(|i| (0..n).map(|j| ratio(i, j)).collect())
             .collect();
         let mut all: Vec<f64> = between.iter().flatten().flatten().copied().collect();
         all.sort_by(f64::total_cmp);
-        let median = all.get(all.len() / 2).copied().unwrap_or(0.0);
-        let largest = LARGEST_RATIO.ln();
-        for ratio in between.iter_mut().flatten().flatten() {
-            *ratio = ratio.clamp(median - largest, median + largest);
-        }
         Self {
-            median,
+            median: all.get(all.len() / 2).copied().unwrap_or(0.0),
             between,
             pulls: landmarks.iter().map(Landmark::pull).collect(),
         }
     }
 
-    /// How much longer ways along the target are on the whole; 1 where none are known.
-    pub(super) fn on_the_whole(&self) -> f64 {
-        self.median.exp()
-    }
-
     /// What the distances of a place to each landmark should be on the target, in longest sides, and how much each counts,
     /// summing to 1 where any does; `on_source` are those along the source, `size` is the longest side of the target.
-    pub(super) fn expected(&self, on_source: &[f64], size: f64) -> Vec<(f32, f32)> {
+    fn expected(&self, on_source: &[f64], size: f64) -> Vec<(f32, f32)> {
         let distance = |k: usize| on_source[k] * self.median.exp() / size;
         let n = self.between.len();
         let nearness: Vec<f64> = (0..n)

@@ -30,7 +30,6 @@ impl LandmarkWays {
 }
 
 /// Lengths of the ways along both shapes from each landmark (row) to everywhere.
-#[derive(Clone)]
 pub(super) struct Ways {
     /// To each vertex of the source.
     pub(super) on_source: Vec<VertexData<f64>>,
@@ -49,21 +48,6 @@ impl Ways {
             on_source: on_source.collect(),
             on_target: landmarks.map(|l| graph.distances(&l.target)).collect(),
         }
-    }
-
-    /// The same on a source that is `ratio` times as large.
-    pub(super) fn scaled(mut self, ratio: f64) -> Self {
-        for distance in &mut self.on_source {
-            distance.iter_mut().for_each(|d| *d *= ratio);
-        }
-        self
-    }
-
-    /// These and those from more landmarks.
-    pub(super) fn and(mut self, more: Self) -> Self {
-        self.on_source.extend(more.on_source);
-        self.on_target.extend(more.on_target);
-        self
     }
 
     /// Those from each of the landmarks to the others.
